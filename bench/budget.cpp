@@ -63,7 +63,7 @@ Status measure_to_one_percent(const std::filesystem::path& scene, Table& table) 
   settings.solver = "gather";
   for (settings.samples = 64; settings.samples <= kPaths; settings.samples *= 2) {
     settings.direct_samples =
-        std::max(pipeline::BakeSettings{}.direct_samples, settings.samples / 4);
+        std::max(first_direct_samples(pipeline::BakeSettings{}), settings.samples / 4);
     LUXEL_TRY(const TimedBake t, timed(settings));
     const double error = rmse_over_mean(t.bake, truth.bake);
     table.rows.push_back({scene.stem().string(), fmt::format("{}", settings.samples),

@@ -104,7 +104,7 @@ Result<GatherStatements> gather_statements(int scenes) {
     LUXEL_TRY(const auto p, prepare(random_scene(uint64_t(seed)).scene, 32, progress));
     LUXEL_TRY(const Judged judged, judge(*p, 256, 1, progress));
     pipeline::BakeSettings settings;
-    settings.samples = settings.direct_samples = 16, settings.seed = 7;
+    settings.samples = 16, settings.direct_samples = 16, settings.seed = 7;
     LUXEL_TRY(const Timed few, solve(*p, "gather", settings, progress));
     out.few.add(stated_error(few.light, judged));
     settings.max_error = 0.1;

@@ -20,8 +20,8 @@ constexpr size_t kAgainGrain = 64;
 Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
                                             const BakeSettings& settings, const TexelLight& light,
                                             std::span<const uint32_t> texels, Progress& progress) {
-  light::SupersampleParams params{.points = settings.supersample};
-  params.direct.samples = settings.direct_samples * kLookAgain;
+  light::SupersampleParams params{.points = first_supersample(settings)};
+  params.direct.samples = first_direct_samples(settings) * kLookAgain;
   params.direct.seed = hash64(settings.seed, kAgainSeed);
   light::DirectLight direct;
   direct.irradiance = light.direct;

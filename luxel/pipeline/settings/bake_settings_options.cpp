@@ -38,12 +38,15 @@ Options<S> sampling_options() {
                        "Indirect rays per texel; gather has --quality's where none is given")
           .unit("RAYS")
           .only(&Can::samples),
-      BakeRows::number("--direct-samples", &S::direct_samples, {1, kMaxSamples},
-                       "Shadow rays per texel towards area lights")
+      BakeRows::number(
+          "--direct-samples", &S::direct_samples, {1, kMaxSamples},
+          "Shadow rays per texel towards area lights; auto: as --samples asks for, so that "
+          "direct light is as well known as the rest")
           .unit("RAYS")
           .only(&Can::direct_samples),
       BakeRows::number("--supersample", &S::supersample, {1, 1024},
-                       "Points per texel across which direct light varies; 1: none")
+                       "Points per texel across which direct light varies; 1: none; auto: as "
+                       "--samples asks for")
           .unit("POINTS")
           .only(&Can::supersample),
       BakeRows::text("--bounces", &S::bounces, parse_bounces, json_of_bounces,

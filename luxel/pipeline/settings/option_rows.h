@@ -75,7 +75,8 @@ struct Rows {
   template <class Access>
   using Value = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
 
-  /// A number, or an optional one, which bake.json calls "auto" where there is none.
+  /// A number, or an optional one, which is "auto" in bake.json and on the command line where there
+  /// is none.
   template <class Access>
   static Row number(std::string_view flag, Access access, Range range, std::string help) {
     using Held = Value<Access>;
@@ -183,8 +184,11 @@ struct Rows {
     row.value = "NUMBER";
     if (range.wrong.empty()) row.range = text_of(range);
     // Numbers that T cannot hold, as -1, 2.5, 1e-60 or nan may be, are out of range.
-    row.is_of_kind = [](std::string_view text) { return is_number(text); };
-    row.read_text = [set, range, flag = row.flag](S& s, std::string_view text) -> Status {
+    row.is_of_kind = [](std::string_view text) {
+      return is_number(text) || (optional && text == "auto");
+    };
+    row.read_text = [access, set, range, flag = row.flag](S& s, std::string_view text) -> Status {
+      if (optional && text == "auto") return std::invoke(access, s) = Value<Access>{}, Status{};
       if (const auto value = number_from<T>(text)) return set(s, *value);
       if (is_number(text)) return out_of_range(flag, std::string(text), range);
       return not_a_number(flag, text);
@@ -201,7 +205,7 @@ struct Rows {
       const auto& value = std::invoke(access, s);
       if (value == std::invoke(access, defaults())) return {};
       if constexpr (optional) {
-        if (in_range(*value)) return {};
+        if (!value || in_range(*value)) return {};
         return out_of_range(flag, fmt::format("{}", *value), range);
       } else {
         if (in_range(value)) return {};

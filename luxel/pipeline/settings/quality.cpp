@@ -14,7 +14,7 @@ QualityNumbers numbers_of(Quality quality) {
       break;
   }
   const BakeSettings plain;
-  return {plain.samples, plain.direct_samples, plain.supersample, plain.denoise};
+  return {plain.samples, first_direct_samples(plain), first_supersample(plain), plain.denoise};
 }
 
 void set_quality(Quality quality, const std::function<bool(std::string_view)>& is_given,
@@ -22,8 +22,12 @@ void set_quality(Quality quality, const std::function<bool(std::string_view)>& i
   const QualityNumbers numbers = numbers_of(quality);
   settings.quality = quality;
   if (!is_given("--samples")) settings.samples = numbers.samples;
-  if (!is_given("--direct-samples")) settings.direct_samples = numbers.direct_samples;
-  if (!is_given("--supersample")) settings.supersample = numbers.supersample;
+  // Shadow rays and points follow samples that somebody asks for.
+  const bool follow = is_given("--samples") && !adds_rounds(settings);
+  if (!is_given("--direct-samples"))
+    settings.direct_samples = follow ? std::optional<int>() : numbers.direct_samples;
+  if (!is_given("--supersample"))
+    settings.supersample = follow ? std::optional<int>() : numbers.supersample;
   const bool as_sampled = is_given("--samples") || settings.max_error > 0 ||
                           settings.time_budget_s > 0 || settings.layers != light::LayerMode::none;
   if (!is_given("--denoise") && !is_given("--no-denoise") && !as_sampled)

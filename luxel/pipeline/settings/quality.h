@@ -16,10 +16,10 @@ struct QualityNumbers {
 /// `none`: the numbers that BakeSettings has by itself.
 QualityNumbers numbers_of(Quality quality);
 
-/// Sets the numbers of a quality where `is_given(flag)` says that the user has not given one. Who
-/// says how much light is sampled, by --samples, --max-error or --time-budget, gets it as it was
-/// sampled: then the denoiser stays as it is, and so it does with --layers, which it does not
-/// filter.
+/// Sets the numbers of a quality, or with --samples auto for shadow rays and points, where
+/// `is_given(flag)` says that the user has not given one. Who says how much light is sampled, by
+/// --samples, --max-error or --time-budget, gets it as it was sampled: then the denoiser stays as
+/// it is, and so it does with --layers, which it does not filter.
 void set_quality(Quality quality, const std::function<bool(std::string_view)>& is_given,
                  BakeSettings& settings);
 

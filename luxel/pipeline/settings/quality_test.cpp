@@ -39,6 +39,21 @@ TEST(Quality, GivenNumbersWin) {
   EXPECT_FALSE(set(Quality::good, {"--no-denoise"}).denoise);
 }
 
+/// Who asks for rays gets as many shadow rays and points as fit them.
+TEST(Quality, ShadowRaysAndPointsFollowGivenSamples) {
+  BakeSettings asked;
+  asked.samples = 1024;
+  const BakeSettings s = set(Quality::good, {"--samples"}, asked);
+  EXPECT_FALSE(s.direct_samples || s.supersample);
+  EXPECT_EQ(first_direct_samples(s), 128);
+  EXPECT_EQ(first_supersample(s), 64);
+  asked.supersample = 5;
+  EXPECT_EQ(set(Quality::good, {"--samples", "--supersample"}, asked).supersample, 5);
+  asked.max_error = 0.02;  // samples are not looked at then
+  EXPECT_EQ(set(Quality::good, {"--samples", "--max-error"}, asked).direct_samples,
+            numbers_of(Quality::good).direct_samples);
+}
+
 /// Whoever says how much light is sampled wants to see that.
 TEST(Quality, LightOfGivenSamplesStaysAsItIs) {
   EXPECT_FALSE(set(Quality::good, {"--samples"}).denoise);

@@ -86,7 +86,24 @@ Status check_attach(const BakeSettings& s) {
               s.attach == export_::Attach::combined ? "combined" : "emissive");
 }
 
+/// Shadow rays for each indirect ray; no fewer, and no more.
+constexpr int kSamplesPerShadowRay = 4, kFewestShadowRays = 8, kMostShadowRays = 128;
+/// Points of a texel; no fewer, and no more.
+constexpr int kFewestPoints = 8, kUsualPoints = 16, kMostPoints = 64;
+
 }  // namespace
+
+int first_direct_samples(const BakeSettings& s) {
+  return s.direct_samples.value_or(
+      std::clamp(s.samples / kSamplesPerShadowRay, kFewestShadowRays, kMostShadowRays));
+}
+
+int first_supersample(const BakeSettings& s) {
+  // A point costs eight shadow rays at least: few samples have few points, and very many have more.
+  const int samples = s.samples;
+  return s.supersample.value_or(std::clamp(
+      std::max(std::min(samples / 8, kUsualPoints), samples / 16), kFewestPoints, kMostPoints));
+}
 
 Status check_contradictions(const BakeSettings& s) {
   LUXEL_TRY_STATUS(check_attach(s));

@@ -59,7 +59,9 @@ struct BakeSettings {
   /// What set_quality() was asked for. The numbers below count, whatever it says.
   Quality quality = Quality::none;
   int samples = gather::GatherParams{}.samples;  ///< rays or paths per texel
-  int direct_samples = gather::GatherParams{}.direct_samples;
+  /// Shadow rays per texel towards area lights; nothing: first_direct_samples(), and with gather
+  /// more where direct light is not as well known as the rest.
+  std::optional<int> direct_samples = gather::GatherParams{}.direct_samples;
   /// Rays are added until the light errs by less than this, and `samples` is ignored; 0: no more
   /// than `samples`.
   double max_error = 0;
@@ -68,7 +70,9 @@ struct BakeSettings {
   /// until either is reached. The result depends on how fast the machine is.
   double time_budget_s = 0;
   bool samples_given = false;  ///< beside max_error or time_budget_s, which win: worth a warning
-  int supersample = 16;        ///< points per texel where direct light varies; 1: none
+  /// Points per texel where direct light varies, 1: none; nothing: first_supersample(), and more as
+  /// above.
+  std::optional<int> supersample = 16;
   int bounces = gather::GatherParams{}.bounces;  ///< < 0: all
   uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts
   uint64_t seed = gather::GatherParams{}.seed;
@@ -98,6 +102,14 @@ struct BakeSettings {
   bool resume = false;  ///< go on with what another bake has kept
   bool keep = false;  ///< build on the bake in DIR/cache, or leave one there; docs/method/rebake.md
 };
+
+/// Whether rays are added in rounds, and `samples` is ignored.
+inline bool adds_rounds(const BakeSettings& settings) {
+  return settings.max_error > 0 || settings.time_budget_s > 0;
+}
+/// How finely direct light is sampled at first: as the settings say, or as fits the samples.
+int first_direct_samples(const BakeSettings& settings);
+int first_supersample(const BakeSettings& settings);
 
 /// What options say must not contradict each other. Errors (bad_setting) name the options, the
 /// values, and what works. The values themselves are checked by the table of options.

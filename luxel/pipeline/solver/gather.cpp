@@ -104,12 +104,14 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
 
 gather::GatherParams gather_params(const BakeSettings& settings) {
   gather::GatherParams params;
-  const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0;
+  const bool rounds = adds_rounds(settings);
   params.samples = rounds ? kFirstSamples : settings.samples;
   params.max_error = float(settings.max_error);
   params.error_measure = settings.error_measure;
-  params.direct_samples = settings.direct_samples;
-  params.supersample = settings.supersample;
+  params.direct_samples = first_direct_samples(settings);
+  params.supersample = first_supersample(settings);
+  params.more_shadow_rays = !rounds && !settings.direct_samples;
+  params.more_points = !rounds && !settings.supersample;
   params.bounces = settings.bounces;
   params.tells_direct = settings.light != LightPart::all;
   params.seed = settings.seed;

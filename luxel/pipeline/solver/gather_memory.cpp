@@ -52,7 +52,8 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
                       (stores.cache && stores.cache->found());
   const uint64_t given_back =
       looks_at_places(settings) || shows ? 0 : transport::kPlaceBytesPerElement * n;
-  const uint64_t levels = rounds || settings.keep ? light::kLevelBytesPerElement : 0;
+  const bool follows = !settings.direct_samples || !settings.supersample;
+  const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;
   const uint64_t traced =
       (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels) * n;
   const uint64_t bounced =

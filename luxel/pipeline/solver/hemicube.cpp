@@ -144,7 +144,8 @@ Options<hemicube::HemicubeParams> hemicube_options() {
 
 hemicube::HemicubeParams hemicube_params(const BakeSettings& settings) {
   hemicube::HemicubeParams params = settings.own.of<hemicube::HemicubeParams>();
-  params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, kMostShadowRays);
+  params.direct_samples =
+      std::min(kShadowRaysPerSample * first_direct_samples(settings), kMostShadowRays);
   params.bounces = settings.bounces, params.seed = settings.seed;
   return params;
 }

@@ -39,7 +39,7 @@ Rgb patch_radiosity(const light::TexelScene& in, const matrix::PatchedScene& pat
 Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings& settings,
                                 const SolveStores&, const SolveObserver&, Progress& progress) {
   matrix::MatrixParams params = settings.own.of<matrix::MatrixParams>();
-  params.direct_samples = settings.direct_samples, params.bounces = settings.bounces;
+  params.direct_samples = first_direct_samples(settings), params.bounces = settings.bounces;
   params.seed = params.patches.seed = params.factors.seed = settings.seed;
   LUXEL_TRY(params.patches.open_backs, open_backs(in.scene, progress));
   const uint64_t needed =
@@ -52,11 +52,11 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   LUXEL_TRY(const matrix::Transfer map,
             matrix::make_transfer(prepared.patched, in.tracer,
                                   {in.elements.position, in.elements.geometric_normal}, progress));
-  const light::DirectParams direct_params{settings.direct_samples, settings.seed};
+  const light::DirectParams direct_params{first_direct_samples(settings), settings.seed};
   LUXEL_TRY(light::DirectLight direct, light::direct_light(in.scene, in.elements, in.lights,
                                                            in.tracer, direct_params, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(in, {.points = settings.supersample, .direct = direct_params},
+            light::supersample(in, {.points = first_supersample(settings), .direct = direct_params},
                                direct, progress));
   TexelLight out;
   out.irradiance.resize(in.elements.size());

@@ -16,7 +16,7 @@ constexpr uint64_t kBytesPerFootprintPoint = 120;
 
 Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettings& settings,
                                    const SolveStores&, const SolveObserver&, Progress& progress) {
-  const int points = std::min(settings.supersample, settings.samples);
+  const int points = std::min(first_supersample(settings), settings.samples);
   const uint64_t per_element = points > 1 ? uint64_t(points) * kBytesPerFootprintPoint : 0;
   LUXEL_TRY_STATUS(memory_to_spare(in, settings, bytes_of_light(in, settings),
                                    per_element * in.elements.size()));

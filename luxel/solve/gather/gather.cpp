@@ -5,6 +5,7 @@
 
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
+#include "luxel/solve/gather/bounce/ambient.h"
 #include "luxel/solve/gather/bounce/bounce_layers.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
@@ -45,21 +46,6 @@ float last_tolerance(const Request& in) {
   if (!in.stores.earlier) return in.params.tolerance;
   const double of_error = kPartOfError * in.stores.earlier->relative_error;
   return std::max(in.params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
-}
-
-/// Light that surfaces send each other, if it is spread evenly: of what they reflect of the direct
-/// light, the part rho that the next reflection leaves, and so on [Cohen88, section 5]. Exact where
-/// direct light and reflectance are the same everywhere and nothing is open.
-std::vector<Rgb> with_ambient(const transport::Elements& elements, std::span<const Rgb> direct) {
-  Rgb sent{}, rho{};
-  for (size_t i = 0; i < direct.size(); ++i)
-    sent += elements.reflectance[i] * direct[i], rho += elements.reflectance[i];
-  const float part = 1 / float(std::max<size_t>(direct.size(), 1));
-  const Rgb left = Rgb{1, 1, 1} - rho * part;
-  const Rgb ambient = sent * part * Rgb{1 / left.x, 1 / left.y, 1 / left.z};
-  std::vector<Rgb> out(direct.begin(), direct.end());
-  for (Rgb& e : out) e += ambient;
-  return out;
 }
 
 /// The rays of an earlier bake. Where only what lies elsewhere changes them, they tell by how much
@@ -191,6 +177,7 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   light.hits = no_hits(scene.elements.size(), in.layer_count());
   if (stores.earlier) light.bounced.irradiance = std::move(stores.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(in, light, progress));
+  LUXEL_TRY_STATUS(balance_direct(in, light, progress));
   LUXEL_TRY_STATUS(choose_places(in, light, progress));
   // 3. Rounds of more rays where the estimated error is too large.
   for (bool more = in.adds_rounds(); more;) {

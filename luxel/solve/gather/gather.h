@@ -36,9 +36,12 @@ struct GatherParams {
   /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
   /// call. The first round and the first direct light are not cut short. Depends on the machine.
   double seconds = 0;
-  int max_samples = 16384;    ///< with max_error or seconds, per element
-  int direct_samples = 64;    ///< shadow rays per element towards emissive surfaces
-  int supersample = 1;        ///< points per element where direct light varies; 1: none
+  int max_samples = 16384;  ///< with max_error or seconds, per element
+  int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
+  int supersample = 1;      ///< points per element where direct light varies; 1: none
+  /// Without rounds: once rays are traced, so many shadow rays, or points, more that direct light
+  /// is known as well as the rest, where that costs at most twice what the rays did.
+  bool more_shadow_rays = false, more_points = false;
   int bounces = -1;           ///< < 0: all
   float tolerance = 1e-4f;    ///< see BounceParams
   bool tells_direct = false;  ///< Gather::sources; not with layers

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "luxel/solve/gather/budget/adaptive.h"
-#include "luxel/solve/gather/budget/rms_round.h"
 #include "luxel/solve/gather/steps.h"
 
 namespace luxel::gather {
@@ -98,16 +97,20 @@ RoundPlan plan_rms(const Request& in, double affordable, const Progressive& ligh
   const double asked = double(params.max_error) * double(params.max_error);
   const double allowed =
       now.noise > 0 ? all * std::max(asked - now.texels, asked * kNoiseWithTexels2) / now.noise : 0;
-  const double points = double(params.supersample * std::max(params.direct_samples / 8, 8));
-  const RayCosts costs = ray_costs(
-      double(light.hits.rays) / double(sum_of(light.hits.samples)),
-      light.shadow_rays_at_sample > 0 ? light.shadow_rays_at_sample : params.direct_samples,
-      light.shadow_rays_at_points > 0 ? light.shadow_rays_at_points : points);
   return plan_rms_round({gathered, direct, light.hits.samples, light.levels}, allowed, affordable,
-                        costs, params.max_samples);
+                        costs_of(in, light), params.max_samples);
 }
 
 }  // namespace
+
+RayCosts costs_of(const Request& in, const Progressive& light) {
+  const GatherParams& params = in.params;
+  const double points = double(params.supersample * std::max(params.direct_samples / 8, 8));
+  return ray_costs(
+      double(light.hits.rays) / double(std::max<uint64_t>(sum_of(light.hits.samples), 1)),
+      light.shadow_rays_at_sample > 0 ? light.shadow_rays_at_sample : params.direct_samples,
+      light.shadow_rays_at_points > 0 ? light.shadow_rays_at_points : points);
+}
 
 Result<bool> next_round(const Request& in, double seconds_left, Progressive& light,
                         Progress& progress) {

@@ -45,8 +45,8 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
   light.averaged = averaged.texels.size();
   if (light.averaged > 0)
     light.shadow_rays_at_points = double(averaged.rays) / double(light.averaged);
-  // Only rounds, and bakes that are kept, ask how finely light was sampled.
-  if (!in.adds_rounds() && in.stores.keep == nullptr) return {};
+  // Who looks finer, and bakes that are kept, ask how finely light was sampled.
+  if (!in.may_look_finer() && in.stores.keep == nullptr) return {};
   light.levels = {std::vector<uint8_t>(scene.elements.size()),
                   std::vector<uint8_t>(scene.elements.size())};
   for (const uint32_t i : averaged.texels) light.levels.averaged[i] = 1;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "luxel/solve/gather/budget/light_errors.h"
+#include "luxel/solve/gather/budget/rms_round.h"
 #include "luxel/solve/gather/gather.h"
 #include "luxel/transport/own_side.h"
 
@@ -27,6 +28,10 @@ struct Request {
   size_t layer_count() const { return layers ? layers->size() : 0; }
   /// Whether rays are added where light is not known well enough.
   bool adds_rounds() const { return params.max_error > 0 || params.seconds > 0; }
+  /// Whether direct light may be looked at more finely than at first.
+  bool may_look_finer() const {
+    return adds_rounds() || params.more_shadow_rays || params.more_points;
+  }
   light::SupersampleParams supersample_params() const {
     return {.points = params.supersample,
             .direct = {.samples = params.direct_samples,
@@ -55,6 +60,9 @@ struct Progressive {
   uint64_t traced_rays = 0, traced_samples = 0;
 };
 
+/// What light of an element costs, by the rays that have been traced.
+RayCosts costs_of(const Request& in, const Progressive& light);
+
 /// Direct light, from scratch or from an earlier bake. Errors: cancelled.
 Status begin_direct(const Request& in, Progressive& light, Progress& progress);
 /// Rays of each element up to so many as `target` says. `watch`: null: nobody. Errors: cancelled,
@@ -63,6 +71,9 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
                    Progress& progress, const TileWatch* watch = nullptr);
 /// All bounces of the light of those rays. Errors: cancelled, the file of hits cannot be read.
 Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress);
+/// Without rounds: looks at direct light more finely where it is not as well known as the rest.
+/// Errors: cancelled, the file of hits cannot be read.
+Status balance_direct(const Request& in, Progressive& light, Progress& progress);
 /// Places at which what rays read is checked, where that costs little beside the rays. Errors:
 /// cancelled, disk full.
 Status choose_places(const Request& in, Progressive& light, Progress& progress);

@@ -250,9 +250,9 @@ void BakeRun::refill_hidden(std::vector<Rgb>& light) const {
 /// For the edits that follow.
 void BakeRun::tell_lamps_apart(Progress& progress) {
   const ThreadLimit threads(settings_.threads);
-  if (!light_ ||
-      !view::tell_lamps_apart({settings_.direct_samples, settings_.supersample, settings_.seed},
-                              *light_, progress))
+  if (!light_ || !view::tell_lamps_apart({pipeline::first_direct_samples(settings_),
+                                          pipeline::first_supersample(settings_), settings_.seed},
+                                         *light_, progress))
     return;
   refill_hidden(light_->of_lamps);
   LiveNews news;

@@ -170,7 +170,9 @@ TEST(LampLight, IsAllDirectLightWhereThereIsNoOther) {
   const auto known = known_of(scene, settings_of_estimates());
   Progress progress;
   const pipeline::BakeSettings s = settings_of_estimates();
-  ASSERT_TRUE(tell_lamps_apart({s.direct_samples, s.supersample, s.seed}, *known, progress));
+  ASSERT_TRUE(
+      tell_lamps_apart({pipeline::first_direct_samples(s), pipeline::first_supersample(s), s.seed},
+                       *known, progress));
   EXPECT_LT(mean_difference(known->of_lamps, known->direct), 1e-6);
   const auto dark = known_of(scene::cornell_box(), settings_of_estimates());
   ASSERT_TRUE(tell_lamps_apart({}, *dark, progress));
@@ -184,7 +186,9 @@ TEST(Estimate, LeavesOutTheLightOfLamps) {
   const auto known = known_of(scene, settings_of_estimates());
   Progress progress;
   const pipeline::BakeSettings s = settings_of_estimates();
-  ASSERT_TRUE(tell_lamps_apart({s.direct_samples, s.supersample, s.seed}, *known, progress));
+  ASSERT_TRUE(
+      tell_lamps_apart({pipeline::first_direct_samples(s), pipeline::first_supersample(s), s.seed},
+                       *known, progress));
   const auto estimate = estimate_light(*known, moved, {}, progress);
   ASSERT_TRUE(estimate);
   const Draft& got = **estimate;

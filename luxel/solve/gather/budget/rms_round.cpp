@@ -9,20 +9,16 @@
 namespace luxel::gather {
 namespace {
 
-/// A shadow ray ends at the first thing that it meets, and is neither sorted nor kept: it takes
-/// about half as long as an indirect ray, whose hit is read in every sweep.
-constexpr double kShadowRay = 0.5;
-
 /// What is left of a variance when samples are doubled, or made four times as many: the square of
 /// a standard error that falls like n^-kDecay.
 const float kLeftOfTwice = std::exp2(-2 * kDecay);
 const float kLeftOfFourTimes = kLeftOfTwice * kLeftOfTwice;
 
-/// Steps are sorted by the fall of variance per cost, in powers of 2^(1/kPerOctave).
-constexpr int kPerOctave = 8, kOctaves = 256;
+/// Steps are sorted by the fall of variance per cost, in powers of 2^(1/kStepsPerOctave).
+constexpr int kStepsPerOctave = 8, kOctavesOfGain = 256;
 int bin_of(double gain, double cost) {
-  const double octave = std::log2(gain / cost) + kOctaves / 2;
-  return std::clamp(int(octave * kPerOctave), 0, kOctaves * kPerOctave - 1);
+  const double octave = std::log2(gain / cost) + kOctavesOfGain / 2;
+  return std::clamp(int(octave * kStepsPerOctave), 0, kOctavesOfGain * kStepsPerOctave - 1);
 }
 
 /// One thing to do for an element.
@@ -55,7 +51,7 @@ ElementSteps steps_of(const NoiseLeft& noise, const RayCosts& costs, int max_sam
 /// The lowest bin of steps that are taken, all above it being taken, too.
 int lowest_bin(const NoiseLeft& noise, double allowed, double affordable, const RayCosts& costs,
                int max_samples) {
-  std::vector<RmsStep> bins(size_t(kOctaves * kPerOctave));
+  std::vector<RmsStep> bins(size_t(kOctavesOfGain * kStepsPerOctave));
   double all = 0;
   for (size_t i = 0; i < noise.samples.size(); ++i) {
     all += double(noise.gathered[i]) + double(noise.direct[i]);

@@ -17,6 +17,10 @@ struct NoiseLeft {
   const light::DirectLevels& levels;
 };
 
+/// A shadow ray over an indirect one: it ends at the first thing that it meets, and is neither
+/// sorted nor kept, while an indirect ray's hit is read in every sweep.
+inline constexpr double kShadowRay = 0.5;
+
 /// What light of one element costs, in indirect rays. Rays are counted and not timed, so that the
 /// same seed gives the same bits on any machine.
 struct RayCosts {

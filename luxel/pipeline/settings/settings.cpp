@@ -86,10 +86,9 @@ Status check_attach(const BakeSettings& s) {
               s.attach == export_::Attach::combined ? "combined" : "emissive");
 }
 
-/// Shadow rays for each indirect ray; no fewer, and no more.
-constexpr int kSamplesPerShadowRay = 4, kFewestShadowRays = 8, kMostShadowRays = 128;
-/// Points of a texel; no fewer, and no more.
-constexpr int kFewestPoints = 8, kUsualPoints = 16, kMostPoints = 64;
+/// Indirect rays for each shadow ray, and for each point; and no fewer of those, and no more.
+constexpr int kSamplesPerShadowRay = 4, kFewestShadowRays = 32, kMostShadowRays = 128;
+constexpr int kSamplesPerPoint = 16, kFewestPoints = 16, kMostPoints = 64;
 
 }  // namespace
 
@@ -99,10 +98,8 @@ int first_direct_samples(const BakeSettings& s) {
 }
 
 int first_supersample(const BakeSettings& s) {
-  // A point costs eight shadow rays at least: few samples have few points, and very many have more.
-  const int samples = s.samples;
-  return s.supersample.value_or(std::clamp(
-      std::max(std::min(samples / 8, kUsualPoints), samples / 16), kFewestPoints, kMostPoints));
+  return s.supersample.value_or(
+      std::clamp(s.samples / kSamplesPerPoint, kFewestPoints, kMostPoints));
 }
 
 Status check_contradictions(const BakeSettings& s) {

@@ -31,9 +31,7 @@ double sum_of_visible(std::span<const float> values, const TracedHits& hits) {
 Result<double> gathered_variance(const Request& in, const Progressive& light, Progress& progress) {
   const light::TexelScene& scene = in.scene;
   const size_t n = light.hits.size();
-  std::vector<Rgb> guess = light.bounced.irradiance.empty()
-                               ? with_ambient(scene.elements, light.direct.irradiance)
-                               : light.bounced.irradiance;
+  std::vector<Rgb> guess = with_ambient(scene.elements, light.direct.irradiance);
   RadiosityMap sent = empty_radiosity_map(scene.map.resolution);
   fill_radiosity(sent, scene.map, scene.elements, light.hits, in.behind, guess);
   std::vector<uint8_t> chosen(n);
@@ -60,7 +58,9 @@ void keep_only_what_may_be_finer(const Request& in, const light::DirectLevels& l
 }  // namespace
 
 Status balance_direct(const Request& in, Progressive& light, Progress& progress) {
-  if (in.adds_rounds() || !in.may_look_finer()) return {};
+  // Light of an earlier bake is as fine as that has made it: whoever builds on it asks for few
+  // rays.
+  if (in.adds_rounds() || !in.may_look_finer() || in.stores.earlier) return {};
   if (!(sum_of_visible(light.direct.split_variance, light.hits) > 0)) return {};
   LUXEL_TRY(const double allowed, gathered_variance(in, light, progress));
   const double samples = double(std::max<uint64_t>(sum_of(light.hits.samples), 1));

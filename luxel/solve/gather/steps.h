@@ -71,8 +71,8 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
                    Progress& progress, const TileWatch* watch = nullptr);
 /// All bounces of the light of those rays. Errors: cancelled, the file of hits cannot be read.
 Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress);
-/// Without rounds: looks at direct light more finely where it is not as well known as the rest.
-/// Errors: cancelled, the file of hits cannot be read.
+/// Without rounds, and from scratch: looks at direct light more finely where it is not as well
+/// known as the rest. Errors: cancelled, the file of hits cannot be read.
 Status balance_direct(const Request& in, Progressive& light, Progress& progress);
 /// Places at which what rays read is checked, where that costs little beside the rays. Errors:
 /// cancelled, disk full.

@@ -244,7 +244,7 @@ bool is_dark(const Stage& stage, std::span<const Candidate> candidates) {
   return std::ranges::all_of(dark, [](uint8_t d) { return d != 0; });
 }
 
-/// Of the surfaces alone it is the highest that the score may be: light and roofs only lower it.
+/// A score of surfaces alone is the highest that the whole may be: light and roofs only lower it.
 double score_of(const Stage& stage, const Candidate& candidate, LookFor what,
                 std::vector<Seen>& scratch) {
   const View view = look(stage, candidate, what, scratch);

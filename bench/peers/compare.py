@@ -35,6 +35,8 @@ NAMES = ("cornell_box", "tile_game_room", "two_rooms", "living_room", "courtyard
 NOT_LIGHT = ("import", "draw", "write files")
 TARGET, FAIR = 0.01, 0.01
 """The error that is asked for, and how far the two bakers' light may differ in the mean."""
+FIRST_ASKED, LEAST_ASKED = 0.04, 0.004
+"""Errors that luxel is asked for: 4 %, 2 %, 1 %, and 0.5 % where the error is still above 1 %."""
 MODES = {"quick": {"paths": 256, "cycles": 256, "luxel": 1024},
          "full": {"paths": 2048, "cycles": 16384, "luxel": 16384}}
 """Paths per texel of each of the two references, and the most samples per texel of each baker."""
@@ -133,13 +135,30 @@ class Series:
     def wants_more(self):
         return self.samples <= self.most and (not self.runs or self.runs[-1][2] > TARGET)
 
+    def settings(self):
+        return f"{self.samples} samples"
+
     def add(self, seconds, error, noise, memory):
         self.runs.append((self.samples, min(seconds), error))
         self.noises.append((self.samples, min(seconds), noise))
-        say(f"{self.name}, {self.samples} samples: {min(seconds):.2f} s, error {100 * error:.2f} %, "
+        say(f"{self.name}, {self.settings()}: {min(seconds):.2f} s, error {100 * error:.2f} %, "
             f"noise {100 * noise:.2f} %")
         self.memory = max(self.memory, *memory)
         self.samples *= 4
+
+
+class AskingSeries(Series):
+    """Bakes with luxel's `--max-error`, half of it from bake to bake. What is written down as samples goes with them:
+    errors of independent samples fall like their root."""
+
+    def asked(self):
+        return FIRST_ASKED * math.sqrt(4 / self.samples)
+
+    def wants_more(self):
+        return self.asked() > LEAST_ASKED and (not self.runs or self.runs[-1][2] > TARGET)
+
+    def settings(self):
+        return f"--max-error {self.asked():g}"
 
 
 def cycles_series(bench, scene, name, a, b, texels, forgiven=None):
@@ -162,10 +181,13 @@ def cycles_series(bench, scene, name, a, b, texels, forgiven=None):
 
 
 def luxel_series(bench, scene, name, a, b, of, denoise):
-    series = Series(f"{name}: luxel", bench.options.luxel_samples)
+    asks = bench.options.luxel_asks == "error"
+    series = (AskingSeries if asks else Series)(f"{name}: luxel", bench.options.luxel_samples)
     light = (measure.mean(a, of) + measure.mean(b, of)) / 2
     while series.wants_more():
-        options = ["--samples", series.samples, "--denoise" if denoise else "--no-denoise",
+        asked = (["--max-error", series.asked(), "--error-measure", "rms"] if asks else
+                 ["--samples", series.samples])
+        options = [*asked, "--denoise" if denoise else "--no-denoise",
                    *shlex.split(bench.options.luxel_options)]
         bakes = [bench.bake_by_luxel(scene, bench.folder / f"{name}-luxel-{seed}", "--seed", seed, *options)
                  for seed in (11, 12)]
@@ -174,6 +196,7 @@ def luxel_series(bench, scene, name, a, b, of, denoise):
         noise = error if denoise else measure.noise(*pictures, of) / light
         series.add([seconds for _, seconds, _ in bakes], error, noise, [memory for _, _, memory in bakes])
         series.mean = sum(measure.mean(picture, of) for picture in pictures) / len(pictures) / light
+    series.of = of
     return series
 
 
@@ -182,27 +205,30 @@ def number(value, digits):
 
 
 def row_of(name, cycles, luxel, mode):
-    """A row of the table and its ratios: None where the bakers' light differs, or one of them never gets there."""
-    slow, quick = (measure.seconds_to(TARGET, series.runs) for series in (cycles, luxel))
-    noise = measure.seconds_to(TARGET, luxel.noises)
-    fair = all(abs(series.mean - 1) <= FAIR for series in (cycles, luxel))
+    """A row of the table and its ratios: None where the bakers' light differs, or one of them never gets there.
+    `cycles` may be None: then its columns are empty."""
+    who = [("Cycles", cycles)] * bool(cycles) + [("luxel", luxel)]
+    fair = all(abs(series.mean - 1) <= FAIR for _, series in who)
+    slow = measure.seconds_to(TARGET, cycles.runs) if cycles else (None, False)
+    quick, noise = (measure.seconds_to(TARGET, runs) for runs in (luxel.runs, luxel.noises))
     ratios = [slow[0] / fast[0] if fair and slow[0] and fast[0] else None for fast in (quick, noise)]
-    for who, (seconds, beyond), series in (("Cycles", slow, cycles), ("luxel", quick, luxel)):
+    for (whose, series), (seconds, beyond) in zip(who, [slow] * bool(cycles) + [quick]):
         if seconds is None:
-            say(f"{name}: {who} does not reach {100 * TARGET:g} %")
+            say(f"{name}: {whose} does not reach {100 * TARGET:g} %")
         elif beyond:
-            say(f"{name}: the seconds of {who} are extrapolated from {100 * series.runs[-1][2]:.2f} %")
+            say(f"{name}: the seconds of {whose} are extrapolated from {100 * series.runs[-1][2]:.2f} %")
     if not fair:
         say(f"{name}: the light differs in the mean by more than {100 * FAIR:g} %: no ratio")
+    least, mean, lasting, memory = ((100 * cycles.runs[-1][2], cycles.mean, 100 * cycles.lasting, cycles.memory / 1e6)
+                                    if cycles else (None,) * 4)
     return [name, number(slow[0], 1), number(quick[0], 2), number(ratios[0], 1), number(noise[0], 2),
-            number(ratios[1], 1), number(100 * cycles.runs[-1][2], 2),
-            number(100 * luxel.runs[-1][2], 2), number(cycles.mean, 4), number(luxel.mean, 4),
-            number(100 * cycles.lasting, 1), number(cycles.memory / 1e6, 0), number(luxel.memory / 1e6, 0),
-            str(len(cycles.of)), mode], ratios
+            number(ratios[1], 1), number(least, 2), number(100 * luxel.runs[-1][2], 2), number(mean, 4),
+            number(luxel.mean, 4), number(lasting, 1), number(memory, 0), number(luxel.memory / 1e6, 0),
+            str(len(luxel.of)), mode], ratios
 
 
 def compared(bench, name):
-    """Rows of one scene with their ratios: without denoiser, and with each one's own where Cycles has one."""
+    """Rows of one scene with their ratios: without denoiser, and with each one's own; Debian's Cycles has none."""
     scene, mode = bench.scene_file(name), bench.options.mode
     name = name if name in NAMES else scene.stem
     (a, texels), (b, _) = (bench.reference(scene, name, seed) for seed in (1, 2))
@@ -210,10 +236,13 @@ def compared(bench, name):
     noise = measure.noise(a, b, cycles.of) / math.sqrt(2) / measure.mean(a, cycles.of)
     say(f"{name}: the mean of both references has {100 * noise:.2f} % noise, which is taken away")
     yield row_of(name, cycles, luxel_series(bench, scene, name, a, b, cycles.of, denoise=False), mode)
-    if not cycles.can_denoise:
-        return say(f"{name}: this Blender has no denoiser: no row with one")
-    cycles = cycles_series(bench, scene, name, a, b, texels, cycles.lasting)
-    yield row_of(f"{name} (denoised)", cycles, luxel_series(bench, scene, name, a, b, cycles.of, denoise=True), mode)
+    of = cycles.of
+    if cycles.can_denoise:
+        cycles = cycles_series(bench, scene, name, a, b, texels, cycles.lasting)
+    else:
+        say(f"{name}: this Blender has no denoiser: luxel's alone")
+        cycles = None
+    yield row_of(f"{name} (denoised)", cycles, luxel_series(bench, scene, name, a, b, of, denoise=True), mode)
 
 
 def print_table(bench):
@@ -266,6 +295,8 @@ def main():
     parser.add_argument("--reference-paths", type=int, help="paths per texel of each reference")
     parser.add_argument("--cycles-samples", type=int, help="the most samples per texel of Cycles")
     parser.add_argument("--luxel-samples", type=int, help="the most samples per texel of luxel")
+    parser.add_argument("--luxel-asks", choices=("error", "samples"), default="error",
+                        help="what luxel is asked for: an RMS error of 4 %%, 2 %%, 1 %%, or samples as Cycles")
     parser.add_argument("--luxel-options", default="", help="more options for luxel, as '--supersample 64'")
     parser.add_argument("--threads", type=int, default=2, help="threads of both (2)")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "luxel-peers",

@@ -87,9 +87,23 @@ def test_rows():
     assert len(row) == len(compare.COLUMNS)
     row = compare.mean_row([ratios, [40, None], [None, None]], "quick")
     assert row[0] == "geometric mean of 2 and 1" and row[3:6] == ["20.0", "", "20.0"], row
+    row, alone = compare.row_of("hall (denoised)", None, quick, "quick")
+    assert alone == [None, None] and row[1:7] == ["-", "4.00", "-", "2.00", "-", "-"] and row[-2] == "5", row
     quick.mean = 1.02
     row, ratios = compare.row_of("hall", slow, quick, "quick")
     assert ratios == [None, None] and row[1:6] == ["40.0", "4.00", "-", "2.00", "-"]
+
+
+def test_asking():
+    """luxel is asked for 4 %, 2 %, 1 % and 0.5 %, or until the error is 1 %."""
+    series, asked = compare.AskingSeries("hall", 4), []
+    while series.wants_more():
+        asked.append(series.asked())
+        series.add([1], 0.02, 0.02, [1])
+    assert asked == [0.04, 0.02, 0.01, 0.005], asked
+    series = compare.AskingSeries("hall", 4)
+    series.add([1], 0.01, 0.01, [1])
+    assert not series.wants_more()
 
 
 def encoded_exr(width, height, channels):
@@ -164,6 +178,7 @@ def run():
     test_errors()
     test_counted()
     test_rows()
+    test_asking()
     test_layouts()
     test_faces()
     with tempfile.TemporaryDirectory() as name:

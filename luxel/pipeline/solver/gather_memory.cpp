@@ -54,8 +54,12 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
       looks_at_places(settings) || shows ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;
   const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;
+  const bool guides = settings.max_error > 0 &&
+                      settings.error_measure == gather::ErrorMeasure::rms && !settings.keep &&
+                      layers == 0;
+  const uint64_t guide = guides ? gather::kGuideBytesPerElement : 0;
   const uint64_t traced =
-      (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels) * n;
+      (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels + guide) * n;
   const uint64_t bounced =
       traced +
       (gather::kBouncedBytesPerElement + (rounds ? gather::kGuessBytesPerElement : 0) +

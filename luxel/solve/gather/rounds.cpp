@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/guide.h"
 #include "luxel/solve/gather/steps.h"
 
 namespace luxel::gather {
@@ -18,6 +19,11 @@ constexpr double kDirectShare = 0.25;
 /// What noise may have of an error when texels cost more than the rest of its square: half of it.
 constexpr float kNoiseWithTexels = 0.70710678f;
 constexpr double kNoiseWithTexels2 = 0.5;
+/// Of the squared noise that is allowed. A plan that is right to a few per cent ends there at once,
+/// and needs no other round for the rest.
+constexpr double kAimedAt = 0.94;
+/// Over the square of the error that is asked for. What is nearly reached takes few rays.
+constexpr double kNoiseWorthAGuide = 10;
 
 /// How many rays the next round may have, such that it and the last bounces end in time: tracing
 /// takes as long per ray as the last round, and bounces grow with the number of all rays.
@@ -29,6 +35,14 @@ double affordable_rays(const Progressive& light, double seconds_left) {
   return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
 }
 
+/// Samples that elements lack.
+uint64_t added_samples(const TracedHits& hits, std::span<const uint16_t> target) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < target.size(); ++i)
+    sum += uint64_t(std::max(0, int(target[i]) - int(hits.samples[i])));
+  return sum;
+}
+
 /// Tells the watcher what is still to come, when an error is asked for.
 void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
                    const Progressive& light, Progress& progress) {
@@ -38,7 +52,7 @@ void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
                             params.max_samples, light.hits.samples);
   const double before = double(sum_of(light.hits.samples));
   if (rounds.empty()) rounds.push_back(0);
-  rounds.front() = sum_of(target) - uint64_t(before);  // that is known
+  rounds.front() = added_samples(light.hits, target);  // that is known
   const double per_sample = light.traced_s / double(std::max<uint64_t>(light.traced_samples, 1));
   std::vector<Stage> stages;
   double samples = before;
@@ -84,21 +98,57 @@ RoundPlan plan_p95(const Request& in, double affordable, const Progressive& ligh
   return out;
 }
 
+/// Makes values add up to `sum`, unless they are none.
+void scale_to(double sum, std::span<float> values) {
+  double all = 0;
+  for (const float v : values) all += double(v);
+  if (!(all > 0)) return;
+  for (float& v : values) v = float(double(v) * (sum / all));
+}
+
 /// Rays of each kind where the sum of squared errors falls most for them, until what is left of it
 /// beside that of texels is as asked for.
 RoundPlan plan_rms(const Request& in, double affordable, const Progressive& light) {
   const GatherParams& params = in.params;
   const std::vector<Rgb>& e = light.bounced.irradiance;
-  const std::vector<float> gathered = variances_of(light.errors.gathered, e),
-                           direct = variances_of(light.errors.direct, e);
-  double all = 0;
-  for (size_t i = 0; i < e.size(); ++i) all += double(gathered[i]) + double(direct[i]);
+  std::vector<float> gathered = variances_of(light.errors.gathered, e),
+                     direct = variances_of(light.errors.direct, e);
+  // All noise is 1: what of it is whose has been measured.
+  scale_to(1 - light.share_of_direct, gathered);
+  scale_to(light.share_of_direct, direct);
   const ExpectedSquares& now = light.errors.expected;
   const double asked = double(params.max_error) * double(params.max_error);
   const double allowed =
-      now.noise > 0 ? all * std::max(asked - now.texels, asked * kNoiseWithTexels2) / now.noise : 0;
-  return plan_rms_round({gathered, direct, light.hits.samples, light.levels}, allowed, affordable,
-                        costs_of(in, light), params.max_samples);
+      now.noise > 0 ? kAimedAt * std::max(asked - now.texels, asked * kNoiseWithTexels2) / now.noise
+                    : 0;
+  return plan_rms_round({gathered, direct, light.hits.samples, light.levels, &light.hits}, allowed,
+                        affordable, costs_of(in, light), params.max_samples);
+}
+
+/// Whether so much noise is too much that it is worth rays to know where it comes from.
+bool asks_for_guide(const Request& in, const Progressive& light) {
+  if (in.stores.keep || in.stores.earlier || in.layers) return false;  // they know rays by number
+  const double asked = double(in.params.max_error) * double(in.params.max_error);
+  return light.hits.guide.of_element.empty() &&
+         light.errors.expected.noise > kNoiseWorthAGuide * asked;
+}
+
+/// The guide, once the light of the first round is known. Errors: cancelled.
+Status find_guide(const Request& in, Progressive& light, Progress& progress) {
+  if (!asks_for_guide(in, light)) return {};
+  Progress own;  // its stages are not those of the bake
+  LUXEL_TRY(light.hits.guide,
+            make_guide(in.scene, in.sides, {light.hits, in.behind, light.bounced.irradiance},
+                       in.params.seed, own));
+  return stopped(progress);
+}
+
+/// Rays that begin anew do so. Returns whether any do.
+bool begin_anew(std::span<const uint8_t> anew, TracedHits& hits) {
+  bool any = false;
+  for (size_t i = 0; i < anew.size(); ++i)
+    if (anew[i] > 0) begin_guided(hits, i, anew[i]), any = true;
+  return any;
 }
 
 }  // namespace
@@ -107,7 +157,7 @@ RayCosts costs_of(const Request& in, const Progressive& light) {
   const GatherParams& params = in.params;
   const double points = double(params.supersample * std::max(params.direct_samples / 8, 8));
   return ray_costs(
-      double(light.hits.rays) / double(std::max<uint64_t>(sum_of(light.hits.samples), 1)),
+      light.rays_per_ray,
       light.shadow_rays_at_sample > 0 ? light.shadow_rays_at_sample : params.direct_samples,
       light.shadow_rays_at_points > 0 ? light.shadow_rays_at_points : points);
 }
@@ -123,11 +173,13 @@ Result<bool> next_round(const Request& in, double seconds_left, Progressive& lig
     if (affordable < kSmallestRound * double(light.hits.rays)) return false;
   }
   const bool is_rms = params.error_measure == ErrorMeasure::rms;
+  if (is_rms) LUXEL_TRY_STATUS(find_guide(in, light, progress));
   const RoundPlan plan = is_rms ? plan_rms(in, affordable, light) : plan_p95(in, affordable, light);
+  const bool begins_anew = begin_anew(plan.anew, light.hits);
   if (params.seconds <= 0) expect_rounds(params, plan.samples, light, progress);
   LUXEL_TRY(const size_t finer, refine_direct(in.scene, plan.finer, in.supersample_params(),
                                               light.levels, light.direct, progress));
-  if (plan.samples == light.hits.samples) return finer > 0;
+  if (!begins_anew && plan.samples == light.hits.samples) return finer > 0;
   LUXEL_TRY_STATUS(trace_round(in, plan.samples, light, progress));
   return true;
 }

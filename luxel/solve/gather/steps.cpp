@@ -37,8 +37,12 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
   }
   LUXEL_TRY(light.direct, light::direct_light(scene.scene, scene.elements, scene.lights,
                                               scene.tracer, supersample.direct, progress));
-  const double elements = double(std::max<size_t>(scene.elements.size(), 1));
-  light.shadow_rays_at_sample = double(light.direct.rays) / elements;
+  // Only light with noise is ever looked at more finely. Where it comes from one lamp, and few
+  // elements see that one, all others' rays say nothing of how many it takes.
+  const auto noisy = std::ranges::count_if(light.direct.variance, [](float v) { return v > 0; });
+  light.shadow_rays_at_sample = noisy > 0 ? std::max(double(light.direct.rays) / double(noisy),
+                                                     double(in.params.direct_samples))
+                                          : 0;
   LUXEL_TRY(const light::Supersampled averaged,
             light::supersample(scene, supersample, light.direct, progress));
   light.direct.rays += averaged.rays;
@@ -71,6 +75,9 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
   LUXEL_TRY_STATUS(
       trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
+  if (light.hits.rounds.size() == 1)
+    light.rays_per_ray = double(light.hits.rays + light.hits.rays_kept) /
+                         double(std::max<uint64_t>(sum_of(light.hits.samples), 1));
   // What was kept says nothing about how long rays take.
   const Progress::Snapshot stage = progress.snapshot();
   if (stage.total == stage.skipped) return {};
@@ -131,14 +138,16 @@ namespace {
 Status measure_noise(const Request& in, Progressive& light, Progress& progress) {
   if (in.params.max_error <= 0 || in.params.error_measure != ErrorMeasure::rms) return {};
   Progress own;  // its stages are not those of the bake
-  LUXEL_TRY(const double of_noise,
+  LUXEL_TRY(const TrueNoise noise,
             noise_by_repeating(in.scene, in.sides,
                                {light.direct, light.levels, light.hits, in.behind,
                                 light.bounced.irradiance, light.errors.noise_variance},
                                {in.supersample_params(), in.params.bounces < 0,
                                 spare_bytes(in.stores, light.hits), in.stores.scratch_folder},
                                own));
-  light.errors.expected.noise *= of_noise / std::exchange(light.of_noise, of_noise);
+  light.share_of_direct = noise.share_of_direct;
+  light.errors.expected.noise *=
+      noise.over_believed / std::exchange(light.of_noise, noise.over_believed);
   return stopped(progress);
 }
 

@@ -51,9 +51,11 @@ struct Progressive {
   /// sample, and averaged over points. 0: none was found.
   double shadow_rays_at_sample = 0, shadow_rays_at_points = 0;
   TracedHits hits;
+  double rays_per_ray = 1;  ///< an element's ray in the first round, with those that follow it
   Bounced bounced;
   LightErrors errors;
   double of_noise = kOfNoise;  ///< the part of pooled variances that is true; measured for an RMS
+  double share_of_direct = 0;  ///< TrueNoise; measured with it
   std::optional<ReadCheck> check;      ///< places at which what rays read is checked
   std::vector<Rgb> first_change;       ///< BounceParams
   double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced

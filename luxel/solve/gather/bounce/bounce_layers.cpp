@@ -78,6 +78,7 @@ struct Lanes {
 /// Adds `weight` times what a hit sends, in its tint.
 [[gnu::always_inline]] inline void add(const StoredHit& hit, float weight, const Lanes& sent,
                                        Lanes& sum) {
+  weight *= hit.weight();
   if (hit.tint() == kNoTint) {
     sum.low += sent.low * weight, sum.high += sent.high * weight;
     return;
@@ -175,7 +176,7 @@ void sweep_layers_of_tile(const LayerSweep& sweep, const TracedHits& hits, const
   const size_t end = std::min(first_element + kTileElements, hits.size());
   for (size_t i = first_element; i < end; ++i) {
     Lanes sum;
-    for (size_t r = 0; r <= hits.last_round[i]; ++r) {
+    for (size_t r = hits.first_round[i]; r <= hits.last_round[i]; ++r) {
       const std::span<const StoredHit> own = tile.of(r, i - first_element);
       for (const StoredHit& hit : own) add_lookup(sweep.radiosity, hit, 1, sum);
     }

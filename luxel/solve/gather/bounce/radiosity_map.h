@@ -35,7 +35,7 @@ void fill_radiosity(RadiosityMap& m, const atlas::TexelMap& map,
                     const transport::Elements& elements, const TracedHits& hits,
                     std::span<const StoredHit> behind, std::span<const Rgb> irradiance);
 
-/// Bilinear over the texels with an element around the place of a hit, times its tint.
+/// Bilinear over the texels with an element around the place of a hit, times its tint and weight.
 inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
   constexpr float kUnit = 1.0f / float(StoredHit::kSteps);
   const float fx = float(hit.fx()) * kUnit, fy = float(hit.fy()) * kUnit;
@@ -44,7 +44,7 @@ inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
   const Float4 sum =
       (upper[0] * (1 - fx) + upper[1] * fx) * (1 - fy) + (lower[0] * (1 - fx) + lower[1] * fx) * fy;
   // Coverage is zero only where all texels around the hit are hidden.
-  const Float4 mean = sum[3] > 0 ? sum * (1.0f / sum[3]) : Float4{};
+  const Float4 mean = sum[3] > 0 ? sum * (hit.weight() / sum[3]) : Float4{};
   if (hit.tint() == kNoTint) return mean;
   const Rgb tint = unpack_tint(hit.tint());
   return mean * Float4{tint.x, tint.y, tint.z, 1};

@@ -39,12 +39,13 @@ Rgb source_of(const TracedHits& hits, std::span<const Rgb> direct, size_t elemen
 
 namespace {
 
-/// Variance of the mean over an element's rays, taken as independent.
+/// Variance of the mean over an element's rays, taken as independent. Of rays that follow a guide,
+/// r to a sample, each stands for r times what it counts.
 float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element) {
-  const float n = float(hits.samples[element]);
+  const float n = float(hits.samples[element]), r = rays_per_sample(hits, element);
   const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
   const float sum2 = g.sum_luminance2 + kPi * kPi * hits.sky_luminance2[element];
-  return std::max(0.0f, sum2 / n - (sum / n) * (sum / n)) / n;
+  return std::max(0.0f, r * sum2 / n - (sum / n) * (sum / n)) / (n * r);
 }
 
 /// ((A - B) / 2)^2 of the halves' means A and B; without halves, of one sample, there is nothing to
@@ -77,7 +78,7 @@ double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits&
   for (size_t i = first_element; i < end; ++i) {
     if (!sweep.only.empty() && !sweep.only[i]) continue;
     Gathered g;
-    for (size_t r = 0; r <= hits.last_round[i]; ++r)
+    for (size_t r = hits.first_round[i]; r <= hits.last_round[i]; ++r)
       gather_round(m, tile.of(r, i - first_element), r == hits.last_round[i], g);
     change2 += update(hits, i, g.sum, sweep);
     sweep.variance[i] = variance_of_mean(g, hits, i);

@@ -111,6 +111,16 @@ Result<std::vector<Rgb>> gather_from(const RadiosityMap& m, const TracedHits& hi
   return out;
 }
 
+/// Makes rays follow the guide where those of the light do.
+void follow_same_guide(const TracedHits& of_light, std::span<const uint32_t> elements,
+                       TracedHits& hits) {
+  if (of_light.guide.of_element.empty()) return;
+  hits.guide.groups = of_light.guide.groups;
+  for (const uint32_t i : elements) hits.guide.of_element.push_back(of_light.guide.of_element[i]);
+  for (size_t k = 0; k < elements.size(); ++k)
+    if (is_guided(of_light, elements[k])) begin_guided(hits, k, of_light.guided[elements[k]]);
+}
+
 /// What elements are lit by.
 struct Repeated {
   const light::TexelScene& of_chosen;
@@ -121,36 +131,42 @@ struct Repeated {
   const RadiosityMap& sent;
 };
 
+struct LightAgain {
+  std::vector<Rgb> direct, irradiance;  ///< E per chosen element [W/m^2]
+};
+
 /// E of the chosen elements with other random numbers: direct light as fine as it was, and as many
 /// rays each. Errors: cancelled, disk full.
-Result<std::vector<Rgb>> light_again(const Repeated& in, Progress& progress) {
+Result<LightAgain> light_again(const Repeated& in, Progress& progress) {
   light::SupersampleParams direct = in.params.direct;
   direct.direct.seed = hash64(direct.direct.seed, kRepeatSeed);
   direct.direct.parts = nullptr, direct.direct.layers = nullptr;
-  LUXEL_TRY(const light::DirectLight again,
+  LUXEL_TRY(light::DirectLight again,
             direct_again(in.of_chosen, in.light.levels, in.elements, direct, progress));
   std::vector<uint16_t> samples;
   for (const uint32_t i : in.elements) samples.push_back(in.light.hits.samples[i]);
   TracedHits hits = no_hits(samples.size());
+  follow_same_guide(in.light.hits, in.elements, hits);
   LUXEL_TRY_STATUS(trace_more(trace_scene(in.of_chosen, &in.sides), samples,
                               {.seed = direct.direct.seed,
                                .memory_limit_bytes = in.params.memory_limit_bytes,
                                .scratch_folder = in.params.scratch_folder,
                                .follows_near = in.params.follows_near},
                               hits, progress));
-  return gather_from(in.sent, hits, again.irradiance, {}, progress);
+  LUXEL_TRY(std::vector<Rgb> e, gather_from(in.sent, hits, again.irradiance, {}, progress));
+  return LightAgain{std::move(again.irradiance), std::move(e)};
 }
 
 }  // namespace
 
-Result<double> noise_by_repeating(const light::TexelScene& in, const transport::OwnSides& sides,
-                                  const LightToRepeat& light, const RepeatParams& params,
-                                  Progress& progress) {
+Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transport::OwnSides& sides,
+                                     const LightToRepeat& light, const RepeatParams& params,
+                                     Progress& progress) {
   // 1. Elements, some of them more than once.
   const Chances chances = chances_of(light.noise_variance, light.hits);
   const std::vector<uint32_t> drawn =
       choose_elements(light.noise_variance, light.hits, chances, params.direct.direct.seed);
-  if (drawn.empty()) return 1.0;
+  if (drawn.empty()) return TrueNoise{};
   const Chosen chosen = chosen_of(in, drawn);
   // 2. Their light as it is, and anew. Both gather from one map.
   RadiosityMap sent = empty_radiosity_map(in.map.resolution);
@@ -162,16 +178,20 @@ Result<double> noise_by_repeating(const light::TexelScene& in, const transport::
   const light::TexelScene of_chosen{in.scene,      in.atlas,  chosen.map,
                                     chosen.places, in.lights, in.tracer};
   const Repeated repeated{of_chosen, sides, light, params, chosen.elements, sent};
-  LUXEL_TRY(const std::vector<Rgb> again, light_again(repeated, progress));
-  // 3. The sum of all variances, as those say that were chosen.
-  double sum = 0;
+  LUXEL_TRY(const LightAgain again, light_again(repeated, progress));
+  // 3. The sums of all variances, as those say that were chosen.
+  double sum = 0, of_direct = 0, of_both = 0;
   size_t k = 0;
   for (const uint32_t i : drawn) {
     while (chosen.elements[k] != i) ++k;
-    const double d = double(luminance(known[i] - again[k]));
-    sum += 0.5 * d * d / chances.of(light.noise_variance[i]);
+    const double direct = double(luminance(light.direct.irradiance[i] - again.direct[k])),
+                 rest = double(luminance(known[i] - again.irradiance[k])) - direct;
+    const double weight = 0.5 / chances.of(light.noise_variance[i]);
+    sum += (direct + rest) * (direct + rest) * weight, of_direct += direct * direct * weight;
+    of_both += (direct * direct + rest * rest) * weight;
   }
-  return sum / double(drawn.size()) / chances.all;
+  return TrueNoise{.over_believed = sum / double(drawn.size()) / chances.all,
+                   .share_of_direct = of_both > 0 ? of_direct / of_both : 0};
 }
 
 }  // namespace luxel::gather

@@ -36,12 +36,18 @@ struct LightToRepeat {
   std::span<const float> noise_variance;  ///< what is believed of its luminance's variance
 };
 
-/// The true sum of variances over that of noise_variance. Some hundred elements are chosen, half of
+/// What is true of noise.
+struct TrueNoise {
+  double over_believed = 1;    ///< the sum of variances over that of noise_variance
+  double share_of_direct = 0;  ///< what direct light has of it
+};
+
+/// What is true of the sum of variances. Some hundred elements are chosen, half of
 /// them in proportion to what they have of that sum. Of m elements with alike variances it is known
 /// to sqrt(2 / m), and its root to half of that: 3 % of 512, 1.6 % of 2,048. 1 where there is no
 /// noise. Errors: cancelled, disk full.
-Result<double> noise_by_repeating(const light::TexelScene& in, const transport::OwnSides& sides,
-                                  const LightToRepeat& light, const RepeatParams& params,
-                                  Progress& progress);
+Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transport::OwnSides& sides,
+                                     const LightToRepeat& light, const RepeatParams& params,
+                                     Progress& progress);
 
 }  // namespace luxel::gather

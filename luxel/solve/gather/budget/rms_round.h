@@ -15,6 +15,7 @@ struct NoiseLeft {
   std::span<const float> gathered, direct;  ///< variances [(W/m^2)^2]; 0 where nobody asks for less
   std::span<const uint16_t> samples;        ///< indirect rays
   const light::DirectLevels& levels;
+  const TracedHits* guided = nullptr;  ///< whose rays may follow a guide; null: there is none
 };
 
 /// A shadow ray over an indirect one: it ends at the first thing that it meets, and is neither
@@ -33,8 +34,10 @@ RayCosts ray_costs(double rays_per_sample, double shadow_rays_at_sample,
 
 /// What the next round does.
 struct RoundPlan {
-  std::vector<uint16_t> samples;  ///< as many as each element is to have: up to 4 times as many
+  std::vector<uint16_t> samples;  ///< as many as each element is to have
   std::vector<uint8_t> finer;     ///< 1: its direct light is looked at one level finer
+  /// The level of the guide with which an element's rays begin anew; 0, and empty: they do not.
+  std::vector<uint8_t> anew{};
 };
 
 /// Where the sum of variances falls most for a ray, until it is `allowed` as variances of

@@ -89,9 +89,10 @@ Status light_coarsely(RoundsTrial& trial, Progress& progress) {
   trial.direct.variance = light.direct_variance;
   trial.direct.split_variance = std::move(light.direct_variance);
   trial.hits = no_hits(trial.in.elements.size());
-  trial.hits.samples = std::move(light.samples);
+  trial.hits.counted = light.samples, trial.hits.samples = std::move(light.samples);
   trial.hits.met_back = std::move(light.met_back);
-  for (const uint32_t i : trial.texels) trial.hits.samples[i] = trial.hits.met_back[i] = 0;
+  for (const uint32_t i : trial.texels)
+    trial.hits.samples[i] = trial.hits.counted[i] = trial.hits.met_back[i] = 0;
   return {};
 }
 

@@ -137,7 +137,7 @@ std::array<uint8_t, kCells> plain_cells(uint64_t seed) {
 
 void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch) {
   if (!(batch.plain.of == samples)) sort_by_plain_cell(samples, batch.plain);
-  batch.seed = seed;
+  batch.seed = seed, batch.doublings.clear();
   batch.rays.resize(samples.count()), batch.sample.resize(samples.count());
   batch.plain_of_cell = plain_cells(seed);
   const auto& first = batch.plain.first_of;
@@ -172,13 +172,48 @@ void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,
     batch.rays[which[j]] = {origin, 0, turn({batch.x[j], batch.y[j], batch.z[j]}), INFINITY};
 }
 
-void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
-               RayBatch& batch) {
-  fill_samples(seed, samples, batch);
+namespace {
+
+/// Gives the samples of the batch their rays.
+void fill_all_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal, RayBatch& batch) {
   directions_of(batch.sample, batch);
   const Turn turn(normal, geometric_normal);
   for (size_t k = 0; k < batch.rays.size(); ++k)
     batch.rays[k] = {origin, 0, turn({batch.x[k], batch.y[k], batch.z[k]}), INFINITY};
+}
+
+}  // namespace
+
+void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
+               RayBatch& batch) {
+  fill_samples(seed, samples, batch);
+  fill_all_directions(origin, normal, geometric_normal, batch);
+}
+
+float CellShares::rays_per_sample() const {
+  uint32_t sum = 0;
+  for (const uint8_t k : doublings) sum += 1u << k;
+  return float(sum) / float(kCells);
+}
+
+void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
+               const CellShares& shares, RayBatch& batch) {
+  batch.seed = seed, batch.sample.clear(), batch.doublings.clear();
+  batch.plain_of_cell = plain_cells(seed);
+  for (size_t c = 0; c < kCells; ++c) {
+    const uint8_t doublings = shares.doublings[c];
+    PlainCells& plain = batch.plain_doubled[doublings];
+    const Samples doubled = samples.doubled(doublings);
+    if (!(plain.of == doubled)) sort_by_plain_cell(doubled, plain);
+    const size_t from = plain.first_of[batch.plain_of_cell[c]],
+                 to = plain.first_of[size_t(batch.plain_of_cell[c]) + 1];
+    batch.sample.insert(batch.sample.end(), plain.sample.begin() + std::ptrdiff_t(from),
+                        plain.sample.begin() + std::ptrdiff_t(to));
+    batch.doublings.resize(batch.sample.size(), doublings);
+    batch.first_of_cell[c + 1] = uint32_t(batch.sample.size());
+  }
+  batch.rays.resize(batch.sample.size());
+  fill_all_directions(origin, normal, geometric_normal, batch);
 }
 
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,6 +18,8 @@ struct Samples {
 
   friend bool operator==(const Samples&, const Samples&) = default;
   uint32_t count() const { return end - first; }
+  /// Those of a cell with 2^doublings as many.
+  Samples doubled(uint32_t doublings) const { return {first << doublings, end << doublings}; }
   /// Whether a sample belongs to the second half of all up to `end`.
   bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
 };
@@ -24,6 +27,16 @@ struct Samples {
 /// Directions are sorted by cells of the unit square, 8 x 8 in Morton order.
 inline constexpr int kCellsPerAxis = 8;
 inline constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
+
+/// How many of its samples each cell has: 2^doublings as many as an element that has them all in
+/// equal parts. A cell's mean stands for the same part of the hemisphere, however many there are.
+struct CellShares {
+  std::array<uint8_t, kCells> doublings{};
+
+  /// Rays of all cells for a sample.
+  float rays_per_sample() const;
+};
+inline constexpr int kMostDoublings = 7;  ///< StoredHit has three bits for them
 
 /// Samples by the cell in which they lie before they are scrambled, which is the same for all
 /// elements.
@@ -42,12 +55,22 @@ struct RayBatch {
       first_of_cell{};  ///< the first ray of each cell; and how many there are
   uint64_t seed = 0;    ///< of the samples
   PlainCells plain;
+  std::vector<uint8_t> doublings;  ///< of each ray's cell; empty: cells have equal shares
+  std::array<PlainCells, kMostDoublings + 1> plain_doubled;  ///< with 2^k times the samples
   std::array<uint8_t, kCells> plain_of_cell{};  ///< which of them scrambling moves to each cell
   std::vector<uint32_t> few;                    ///< buffer: samples of some rays
   std::vector<float> u, v, x, y, z;  ///< buffers: points of the square, directions about +z
 
   /// The cell of the k-th ray.
   size_t cell_of(uint32_t k) const;
+  uint32_t doublings_of(size_t k) const { return doublings.empty() ? 0 : doublings[k]; }
+  /// What it counts: 2^-doublings.
+  float weight_of(size_t k) const { return std::ldexp(1.0f, -int(doublings_of(k))); }
+  /// Whether the k-th ray belongs to the second half of its cell's samples, which are those of the
+  /// element.
+  bool in_second_half(size_t k, Samples samples) const {
+    return samples.doubled(doublings_of(k)).in_second_half(sample[k]);
+  }
 };
 
 /// The seed of an element's rays.
@@ -59,6 +82,11 @@ inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
 /// neighbours in a packet point in similar directions. A sample's ray is the same in any batch.
 void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
                RayBatch& batch);
+
+/// fill_rays() with as many samples in each cell as the shares say: of a cell's samples, the first
+/// ones.
+void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
+               const CellShares& shares, RayBatch& batch);
 
 /// Directions within an angle below a right one of `axis`.
 struct Cone {

@@ -1,6 +1,9 @@
 // The rays of all elements, traced once: for every ray, which place of the lightmap it met.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 #include "luxel/base/row_store.h"
 #include "luxel/base/vec.h"
 
@@ -15,18 +18,21 @@ struct StoredHit {
   struct Ray {
     uint32_t tint = 2047;      ///< what it passed, see pack_tint; 2047 is white
     bool second_half = false;  ///< which half of its element's samples it belongs to
+    uint32_t doublings = 0;    ///< CellShares: it counts 2^-doublings
   };
-  static constexpr uint32_t kSteps = 2047;  ///< parts of a texel
+  static constexpr uint32_t kSteps = 1023;  ///< parts of a texel
   /// `base`: the upper left of the four texels around the point, as an index into a map with a
   /// border of one texel, (y + 1) * (side + 2) + x + 1 < 2^29. `fx`, `fy`: how far the point is
   /// towards the lower right one, in 1/kSteps.
   static StoredHit pack(uint32_t base, uint32_t fx, uint32_t fy, Ray ray) {
-    return {uint64_t(base) << 35 | uint64_t(fx) << 24 | uint64_t(fy) << 13 |
-            uint64_t(ray.second_half) << 11 | ray.tint};
+    return {uint64_t(base) << 35 | uint64_t(fx) << 25 | uint64_t(fy) << 15 |
+            uint64_t(ray.doublings) << 12 | uint64_t(ray.second_half) << 11 | ray.tint};
   }
   uint32_t base() const { return uint32_t(bits >> 35); }
-  uint32_t fx() const { return uint32_t(bits >> 24) & kSteps; }
-  uint32_t fy() const { return uint32_t(bits >> 13) & kSteps; }
+  uint32_t fx() const { return uint32_t(bits >> 25) & kSteps; }
+  uint32_t fy() const { return uint32_t(bits >> 15) & kSteps; }
+  /// 2^-doublings.
+  float weight() const { return std::bit_cast<float>((127 - (uint32_t(bits >> 12) & 7)) << 23); }
   bool second_half() const { return bits >> 11 & 1; }
   uint32_t tint() const { return uint32_t(bits) & 2047; }
 };

@@ -10,10 +10,12 @@ TEST(StoredHit, KeepsWhatIsPacked) {
   for (const uint32_t base : {0u, 1u, 12345678u, last})
     for (const uint32_t f : {0u, 7u, StoredHit::kSteps}) {
       const StoredHit hit =
-          StoredHit::pack(base, f, StoredHit::kSteps - f, {.tint = 1234, .second_half = f == 7});
+          StoredHit::pack(base, f, StoredHit::kSteps - f,
+                          {.tint = 1234, .second_half = f == 7, .doublings = f % 8});
       EXPECT_EQ(hit.base(), base);
       EXPECT_EQ(hit.fx(), f);
       EXPECT_EQ(hit.fy(), StoredHit::kSteps - f);
+      EXPECT_EQ(hit.weight(), std::exp2(-float(f % 8)));
       EXPECT_EQ(hit.tint(), 1234u);
       EXPECT_EQ(hit.second_half(), f == 7);
     }

@@ -70,7 +70,7 @@ inline size_t first_hit(size_t element, size_t stride, size_t count) {
 template <class Take>
 void for_each_sparse(const TracedHits& hits, const TileHits& tile, size_t element, size_t stride,
                      const Take& take) {
-  for (size_t r = 0; r <= hits.last_round[element]; ++r) {
+  for (size_t r = hits.first_round[element]; r <= hits.last_round[element]; ++r) {
     const std::span<const StoredHit> own = tile.of(r, element % kTileElements);
     const size_t first = first_hit(element, stride, own.size());
     if (own.empty()) continue;

@@ -6,6 +6,7 @@
 
 #include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/vec.h"
+#include "luxel/solve/gather/rays/cell_guide.h"
 #include "luxel/solve/gather/rays/hit_store.h"
 #include "luxel/transport/back_faces.h"
 
@@ -14,9 +15,15 @@ namespace luxel::gather {
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.
 struct TracedHits {
   std::vector<HitStore> rounds;
-  std::vector<uint16_t> samples;    ///< per element, of all rounds
+  std::vector<uint16_t> samples;    ///< per element, of all rounds that count
   std::vector<uint8_t> last_round;  ///< per element, that which added to it last
-  /// Per element, how many of its rays left the scene, and how many met the back of a one-sided
+  /// Per element, the first round that counts: 0, or that in which its rays began anew; and the
+  /// level of the guide which they follow since then, 0 for none.
+  std::vector<uint8_t> first_round, guided;
+  Guide guide;
+  /// Per element, rays whose ends the next three count: none that follow the guide.
+  std::vector<uint16_t> counted;
+  /// Per element, how many of those rays left the scene, and how many met the back of a one-sided
   /// surface close by or far: those bring no light, and many of them mean that the element lies
   /// inside a solid (kept for leak repair).
   /// Backs of double-sided surfaces send the light of their front (docs/method/gather.md); they are
@@ -45,7 +52,8 @@ struct TracedHits {
 /// What TracedHits takes per element besides the hits themselves, in one round: its own arrays, and
 /// where each element's hits end.
 inline constexpr uint64_t kTracedBytesPerElement =
-    bytes_per_entry(&TracedHits::samples, &TracedHits::last_round, &TracedHits::escaped,
+    bytes_per_entry(&TracedHits::samples, &TracedHits::last_round, &TracedHits::first_round,
+                    &TracedHits::guided, &TracedHits::counted, &TracedHits::escaped,
                     &TracedHits::met_back, &TracedHits::met_double_sided_back, &TracedHits::sky,
                     &TracedHits::sky_luminance2, &TracedHits::sky_first_less_second) +
     bytes_per_entry(&HitTile::end);
@@ -56,12 +64,21 @@ inline constexpr uint64_t kEndCountBytesPerElement =
 /// Whether an element lies inside a solid, under a floor or behind a wall (transport::is_hidden).
 inline bool is_hidden(const TracedHits& hits, size_t element) {
   return transport::is_hidden(
-      transport::BackFaces{.rays = hits.samples[element], .one_sided = hits.met_back[element]});
+      transport::BackFaces{.rays = hits.counted[element], .one_sided = hits.met_back[element]});
 }
 /// What an element's rays met of backs.
 inline transport::BackFaces back_faces(const TracedHits& hits, size_t element) {
-  return {hits.samples[element], hits.met_back[element], hits.met_double_sided_back[element]};
+  return {hits.counted[element], hits.met_back[element], hits.met_double_sided_back[element]};
 }
+
+/// Whether an element's rays follow the guide.
+inline bool is_guided(const TracedHits& hits, size_t element) { return hits.guided[element] != 0; }
+/// How many rays an element has for each of its samples.
+float rays_per_sample(const TracedHits& hits, size_t element);
+
+/// Forgets what an element's rays have brought, but for what their ends tell: the next round begins
+/// anew, and follows the guide at a level.
+void begin_guided(TracedHits& hits, size_t element, int level);
 
 /// Nothing traced yet. `layers`: how many there are; 0: light is not told apart.
 TracedHits no_hits(size_t elements, size_t layers = 0);

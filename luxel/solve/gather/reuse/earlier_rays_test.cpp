@@ -206,7 +206,7 @@ RayTile some_tile() {
   out.ends = {RayEnd::hit, RayEnd::escaped, RayEnd::followed, RayEnd::behind, RayEnd::back};
   out.hits.end = {2, 2, 3};  // that of the ray followed on, too
   for (const uint32_t base : {0u, 17u, kPlaces - 1})
-    out.hits.entries.push_back(StoredHit::pack(base, 3, 2047, {kNoTint, base > 5}));
+    out.hits.entries.push_back(StoredHit::pack(base, 3, StoredHit::kSteps, {kNoTint, base > 5}));
   out.escaped.resize(kElements);
   out.escaped[0].add({1, 2, 3}, false), out.escaped[0].add({4, 1, 0}, true);
   return out;

@@ -1,6 +1,7 @@
 #include "luxel/solve/gather/trace/follow_on.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "luxel/base/random.h"
@@ -21,10 +22,12 @@ FollowedPath end_of(const RayScene& in, const NearPath& path, TracedHits& out) {
       found && (!path.hit.back_face ||
                 scene::reflects_from_behind(scene::material_at(in.scene, path.hit.point())));
   const FollowedWay way{path.is_plain, alive ? path.direction : Vec3{}, has_hit, path.second_half};
+  light = light * std::ldexp(1.0f, -int(path.doublings));
   FollowedPath end{path.element, path.ray, path.first_m, FollowedRay::pack(light, way), {}};
   if (!has_hit) return end;
   const uint32_t tint = pack_tint(path.throughput, hash64(path.seed, path.sample ^ 0x4e37u));
-  end.hit = store(in, path.hit.point(), {tint, path.second_half}, transport::MayBeInside::yes);
+  end.hit = store(in, path.hit.point(), {tint, path.second_half, path.doublings},
+                  transport::MayBeInside::yes);
   return end;
 }
 

@@ -11,7 +11,8 @@ namespace {
 /// Everything that a round of tracing changes per element.
 template <class Hits, class Visit>
 void for_each_array(Hits& hits, const Visit& visit) {
-  visit(hits.samples), visit(hits.last_round);
+  visit(hits.samples), visit(hits.last_round), visit(hits.first_round), visit(hits.guided),
+      visit(hits.counted);
   visit(hits.escaped), visit(hits.met_back), visit(hits.met_double_sided_back);
   visit(hits.sky), visit(hits.sky_luminance2), visit(hits.sky_first_less_second);
 }
@@ -34,6 +35,9 @@ KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
   Digest digest;
   digest.add("trace rays"), digest.add(params.seed), digest.add(params.follows_near);
   digest.add(hits.rounds.size()), digest.add(target);
+  digest.add(std::span(hits.guide.of_element));
+  for (const GuidedGroup& group : hits.guide.groups)
+    digest.add(std::span<const float>(group.doublings));
   for_each_array(hits, [&](const auto& array) { digest.add(std::span(array)); });
   return {params.parts, digest.value()};
 }

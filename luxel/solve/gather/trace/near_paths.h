@@ -31,6 +31,7 @@ struct NearPath {
   uint32_t ray = 0;          ///< of its element's batch
   uint64_t seed = 0;         ///< of its element
   bool second_half = false;  ///< of its element's samples
+  uint32_t doublings = 0;    ///< StoredHit::Ray
   Rgb throughput{1, 1, 1};   ///< of reflectances and glass, over the chances to go on
   Rgb light{};               ///< radiance that it has brought so far
   trace::Hit hit;            ///< where it is

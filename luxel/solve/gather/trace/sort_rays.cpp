@@ -38,7 +38,7 @@ EscapedLight escaped_light(const RayScene& in, RayBuffers& buffers, Samples samp
   for (size_t at = 0; at < look.rays.size(); ++at) {
     const uint32_t k = look.rays[at];
     const Rgb l = buffers.tint.empty() ? look.light[at] : look.light[at] * buffers.tint[k];
-    out.add(l, samples.in_second_half(buffers.batch.sample[k]));
+    out.add(l * buffers.batch.weight_of(k), buffers.batch.in_second_half(k, samples));
   }
   return out;
 }
@@ -83,7 +83,8 @@ RayEnd end_of(const RayScene& in, RayBuffers& buffers, size_t k, size_t element,
     NearPath path;
     path.element = uint32_t(element), path.ray = uint32_t(k), path.sample = buffers.batch.sample[k];
     path.seed = hash64(in.seed ^ 0x7ea4, element);
-    path.second_half = samples.in_second_half(path.sample);
+    path.second_half = buffers.batch.in_second_half(k, samples);
+    path.doublings = buffers.batch.doublings_of(k);
     if (!buffers.tint.empty()) path.throughput = buffers.tint[k];
     path.hit = hit, path.is_plain = !hit.back_face;
     if (goes_on(*in.near, path)) {
@@ -112,18 +113,20 @@ struct RaysOf {
 void take_traced(const RayScene& in, const RayBuffers& buffers, size_t k, RayEnd end,
                  const RaysOf& rays, TracedHits& out, RayTile& tile) {
   const auto [element, samples] = rays;
+  const bool counts = !is_guided(out, element);
   if (end == RayEnd::followed) {
-    if (buffers.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
+    if (counts && buffers.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
     return;
   }
-  count_ends(end, 1, element, out);
+  if (counts) count_ends(end, 1, element, out);
   if (!is_hit(end)) return;
   const uint32_t sample = buffers.batch.sample[k];
   const uint32_t tint = buffers.tint.empty()
                             ? kNoTint
                             : pack_tint(buffers.tint[k], hash64(element, sample ^ 0x7147u));
   tile.hits.entries.push_back(
-      store(in, buffers.hits[k].point(), {tint, samples.in_second_half(sample)}));
+      store(in, buffers.hits[k].point(),
+            {tint, buffers.batch.in_second_half(k, samples), buffers.batch.doublings_of(k)}));
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ void add_sky(const light::LightLayers* layers, Rgb radiance, size_t element, Tra
 /// is unknown, as all is looked up there.
 void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, TracedHits& out);
 
-/// Counts what the rays of the batch met, which have all been traced, and adds them to `tile`.
+/// Counts what the rays of the batch met, which have all been traced, unless they are guided, and
+/// adds them to `tile`.
 /// Those that are to be followed on are added to buffers.near.paths.
 void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                TracedHits& out, RayTile& tile);

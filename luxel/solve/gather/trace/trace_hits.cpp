@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <optional>
 
@@ -40,6 +41,9 @@ uint32_t places_of(const atlas::Atlas& atlas) {
   return (side + 2) * (side + 1) - 1;
 }
 
+/// Any number: it sets the directions of guided rays apart from those that told where to look.
+constexpr uint64_t kGuidedSeed = 0x9a1de;
+
 /// One round's way through the elements.
 struct Round {
   const RayScene& ray_scene;
@@ -57,10 +61,7 @@ struct Round {
   Samples samples_of(size_t i, const TracedHits& hits) const {
     return {hits.samples[i], std::max(hits.samples[i], target[i])};
   }
-  void fill_batch(size_t i, Samples samples, RayBatch& batch) const {
-    fill_rays(origin_of(i), elements.normal[i], elements.geometric_normal[i], seed_of_rays(seed, i),
-              samples, batch);
-  }
+  void fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBatch& batch) const;
   Vec3 origin_of(size_t i) const {
     return trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
   }
@@ -75,6 +76,17 @@ struct Round {
   /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
   void drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits& hits) const;
 };
+
+void Round::fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBatch& batch) const {
+  const Vec3 from = origin_of(i), n = elements.normal[i], flat = elements.geometric_normal[i];
+  if (is_guided(hits, i)) {
+    const CellShares shares =
+        shares_at(hits.guide.groups[hits.guide.of_element[i]], hits.guided[i]);
+    return fill_rays(from, n, flat, seed_of_rays(hash64(seed, kGuidedSeed), i), samples, shares,
+                     batch);
+  }
+  fill_rays(from, n, flat, seed_of_rays(seed, i), samples, batch);
+}
 
 void Round::drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits& hits) const {
   std::vector<NearPath>& paths = buffers.near.paths;
@@ -106,26 +118,31 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayBuffers& bu
   size_t traced = samples.count();
   if (before) {
     traced = buffers.retraced.size();
-    if (!before->escaped) fill_batch(i, samples, buffers.batch);
+    if (!before->escaped) fill_batch(i, samples, out, buffers.batch);
     merge_rays(ray_scene, buffers, i, samples, *before, out, tile.rays_met);
   } else {
-    fill_batch(i, samples, buffers.batch);
+    fill_batch(i, samples, out, buffers.batch);
+    traced = buffers.batch.rays.size();
     trace_all(tracer, buffers);
     sort_rays(ray_scene, buffers, i, samples, out, tile.rays_met);
   }
   drop_enclosed_paths(i, buffers, out);
-  tile.kept += samples.count() - traced;
+  if (!is_guided(out, i)) out.counted[i] = out.samples[i];
+  tile.kept += before ? samples.count() - traced : 0;
   tile.rays += traced;
 }
 
-/// The most samples that the round adds to one element.
+/// The most rays that the round adds to one element.
 size_t most_added(std::span<const uint16_t> target, const TracedHits& hits) {
   size_t most = 0;
   for (size_t i = 0; i < target.size(); ++i) {
     if (target[i] <= hits.samples[i]) continue;
     const size_t added = size_t(target[i] - hits.samples[i]);
     LUXEL_CHECK(added >= hits.samples[i]);
-    most = std::max(most, added);
+    // Where an element has fewer samples than cells, some cells have more of them than others.
+    const size_t uneven = is_guided(hits, i) ? kCells : 0;
+    const double rays = std::ceil(double(added + uneven) * double(rays_per_sample(hits, i)));
+    most = std::max(most, size_t(rays));
   }
   return most;
 }
@@ -280,6 +297,7 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   const transport::Elements& elements = in.elements;
   LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
   LUXEL_CHECK(hits.rounds.size() < 256);
+  LUXEL_CHECK(hits.guide.of_element.empty() || !(params.keep || params.earlier || params.layers));
   LUXEL_CHECK(hits.sky_by_layer.size() ==
               elements.size() * (params.layers ? params.layers->size() : 0));
   // Hits of this round go to memory as far as those of the rounds before leave room.

@@ -69,6 +69,8 @@ int samples_per_point(int samples) { return std::max(std::min(samples, 8), sampl
 
 /// Points of a texel at a chart's border, when it is asked whether light varies.
 constexpr int kBorderPoints = 8;
+/// And of one where a fleck of sun may be, which can be small.
+constexpr int kFleckPoints = 16;
 
 /// Buffers of one thread.
 struct PointBuffers {
@@ -189,9 +191,9 @@ std::vector<uint32_t> border_texels(const atlas::Atlas& atlas, const atlas::Texe
   return out;
 }
 
-/// Keeps those of `which` whose light differs at some of a few points: where a chart ends there is
+/// Keeps those of `which` whose light differs at some of a few points. Where a chart ends there is
 /// no neighbour who would tell of a shadow's edge. Returns the number of rays.
-Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& params,
+Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& params, int points,
                              const DirectLight& direct, std::vector<uint32_t>& which,
                              Progress& progress) {
   const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
@@ -207,8 +209,7 @@ Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& para
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
-      atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), kBorderPoints, each.seed,
-                           work.spread);
+      atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), points, each.seed, work.spread);
       light_points(place, in.lights, each, i, work);
       traced += work.batch.rays.size();
       for (const LightAt& l : work.light)
@@ -227,6 +228,56 @@ Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& para
   return uint64_t(rays);
 }
 
+/// Texels beside those of `which` in their charts, but for those that are marked in `asked`; they
+/// are marked now. In the order of the map.
+std::vector<uint32_t> beside(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                             std::span<const uint32_t> which, std::vector<uint8_t>& asked) {
+  const int side = map.resolution;
+  const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
+  std::vector<uint32_t> out;
+  for (const uint32_t i : which) {
+    const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+    for (int v = std::max(0, y - 1); v <= std::min(side - 1, y + 1); ++v)
+      for (int u = std::max(0, x - 1); u <= std::min(side - 1, x + 1); ++u) {
+        const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
+        if (j == atlas::kNone || asked[j] || chart_of(i) != chart_of(j)) continue;
+        asked[j] = 1;
+        out.push_back(j);
+      }
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+/// All texels whose light differs from their neighbours', and those that may be added.
+struct FleckTexels {
+  std::span<const uint32_t> uneven, among;
+};
+
+/// Adds texels to `which` that lie beside those whose light varies, and whose own does: flecks of
+/// sun between leaves are smaller than texels, and the samples of neighbours miss them together.
+/// Soft light has none. Returns the number of rays.
+Result<uint64_t> add_flecks(const TexelScene& in, FleckTexels texels,
+                            const SupersampleParams& params, const DirectLight& direct,
+                            std::vector<uint32_t>& which, Progress& progress) {
+  if (in.lights.punctual.empty()) return uint64_t(0);
+  std::vector<uint8_t> asked(in.map.texels.size(), 1);
+  for (const uint32_t i : texels.among) asked[i] = 0;
+  for (const uint32_t i : which) asked[i] = 1;
+  std::vector<uint32_t> last;
+  std::ranges::set_union(texels.uneven, which, std::back_inserter(last));
+  uint64_t rays = 0;
+  while (!last.empty()) {
+    last = beside(in.atlas, in.map, last, asked);
+    LUXEL_TRY(const uint64_t traced, keep_uneven(in, params, kFleckPoints, direct, last, progress));
+    rays += traced;
+    std::vector<uint32_t> all;
+    std::ranges::merge(which, last, std::back_inserter(all));
+    which = std::move(all);
+  }
+  return rays;
+}
+
 }  // namespace
 
 Result<Supersampled> supersample(const TexelScene& in, const SupersampleParams& params,
@@ -240,15 +291,17 @@ Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t>
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress) {
   if (params.points == 1) return Supersampled{};
+  const std::vector<uint32_t> all = uneven_texels(in.atlas, in.map, direct, params.threshold);
   std::vector<uint32_t> uneven, borders, which;
-  std::ranges::set_intersection(uneven_texels(in.atlas, in.map, direct, params.threshold), among,
-                                std::back_inserter(uneven));
+  std::ranges::set_intersection(all, among, std::back_inserter(uneven));
   std::ranges::set_intersection(border_texels(in.atlas, in.map, uneven), among,
                                 std::back_inserter(borders));
-  LUXEL_TRY(const uint64_t rays, keep_uneven(in, params, direct, borders, progress));
+  LUXEL_TRY(const uint64_t rays, keep_uneven(in, params, kBorderPoints, direct, borders, progress));
   std::ranges::merge(uneven, borders, std::back_inserter(which));
+  LUXEL_TRY(const uint64_t of_flecks,
+            add_flecks(in, {all, among}, params, direct, which, progress));
   LUXEL_TRY(Supersampled out, average_texels(in, which, params, direct, progress));
-  out.rays += rays;
+  out.rays += rays + of_flecks;
   return out;
 }
 

@@ -71,6 +71,9 @@ Result<Table> measure_rebake(const std::filesystem::path& shared, int threads);
 /// FLIP of pictures of bakes of each quality against a long one, and processor seconds.
 Result<Table> measure_quality(const std::filesystem::path& shared, int threads);
 
+/// Stated and true errors of bakes that are asked for a root mean square error. An hour.
+Result<Table> measure_rms(const std::filesystem::path& shared, int threads);
+
 struct Bench {
   std::string_view name;
   BenchFunction run;
@@ -81,6 +84,7 @@ inline constexpr std::array kBenches{
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
     Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
     Bench{"budget", measure_budget},   Bench{"layers", measure_layers},
-    Bench{"rebake", measure_rebake},   Bench{"quality", measure_quality}};
+    Bench{"rebake", measure_rebake},   Bench{"quality", measure_quality},
+    Bench{"rms", measure_rms}};
 
 }  // namespace luxel::bench

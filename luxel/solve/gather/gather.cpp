@@ -138,6 +138,16 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
   return {};
 }
 
+/// Rays per element: of those that follow a guide there are more than samples.
+std::vector<uint16_t> rays_of(const TracedHits& hits) {
+  std::vector<uint16_t> out = hits.samples;
+  for (size_t i = 0; i < out.size(); ++i)
+    if (is_guided(hits, i))
+      out[i] = uint16_t(
+          std::min(65535.0f, std::round(float(hits.samples[i]) * rays_per_sample(hits, i))));
+  return out;
+}
+
 /// Moves what the caller gets out of what is known in the end.
 void take_result(Progressive&& light, Gather& out) {
   out.relative_error = light.errors.expected.rms();
@@ -151,7 +161,7 @@ void take_result(Progressive&& light, Gather& out) {
   out.errors = std::move(light.errors.all);
   out.gathered_errors = std::move(light.errors.gathered);
   out.met_back = std::move(light.hits.met_back);
-  out.samples = std::move(light.hits.samples);
+  out.samples = rays_of(light.hits);
   out.rays = light.direct.rays + light.hits.rays, out.rays_kept = light.hits.rays_kept;
   out.supersampled = light.averaged;
   out.sweeps = light.bounced.sweeps;

@@ -46,6 +46,10 @@ struct TurnedBox {
 /// What the tracer may expect of 16 rays that follow each other in a batch.
 enum class Packets : uint8_t {
   any,
+  /// From one place, in order of direction. In scenes of few triangles they are traced like
+  /// bundles, 1.4 to 2.5 times as fast (`luxel bench bundles`). Where surfaces coincide, which of
+  /// them a ray meets may then depend on the rest of its packet.
+  alike,
   bundles  ///< near to each other all the way, like neighbouring pixels: twice as fast
 };
 

@@ -105,7 +105,7 @@ void add_element(const GuideScene& from, uint32_t i, GuideBuffers& buffers,
             e.normal[i], e.geometric_normal[i], seed_of_rays(from.seed, i), {0, uint32_t(kCells)},
             batch);
   buffers.hits.resize(batch.rays.size());
-  from.in.tracer.closest_hits(batch.rays, buffers.hits);
+  from.in.tracer.closest_hits(batch.rays, buffers.hits, trace::Packets::alike);
   for (size_t c = 0; c < kCells; ++c)
     for (uint32_t k = batch.first_of_cell[c]; k < batch.first_of_cell[c + 1]; ++k)
       sums[c].add(double(brought(from, batch.rays[k], buffers.hits[k])));

@@ -98,7 +98,7 @@ void Round::drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits&
 /// Traces all rays of the batch.
 void trace_all(const trace::RayTracer& tracer, RayBuffers& buffers) {
   buffers.hits.resize(buffers.batch.rays.size());
-  tracer.closest_hits(buffers.batch.rays, buffers.hits);
+  tracer.closest_hits(buffers.batch.rays, buffers.hits, trace::Packets::alike);
   if (!tracer.has_tints()) return;
   buffers.tint.assign(buffers.batch.rays.size(), {1, 1, 1});
   tracer.tint(buffers.batch.rays, buffers.hits, buffers.tint);

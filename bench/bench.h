@@ -39,6 +39,8 @@ using BenchFunction = Result<Table> (*)(const std::filesystem::path& shared, int
 
 /// Gather's rays per second against a bare loop of rtcIntersect1 over the same rays.
 Result<Table> measure_rays(const std::filesystem::path& shared, int threads);
+/// Those of rays that texels share the directions of, against gather's own: an experiment.
+Result<Table> measure_bundles(const std::filesystem::path& shared, int threads);
 /// The Cornell box of [Moreno05, table 5.1] at four resolutions.
 Result<Table> measure_maps(const std::filesystem::path& shared, int threads);
 /// Charts, packing and texels of the shared scenes.
@@ -85,6 +87,6 @@ inline constexpr std::array kBenches{
     Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
     Bench{"budget", measure_budget},   Bench{"layers", measure_layers},
     Bench{"rebake", measure_rebake},   Bench{"quality", measure_quality},
-    Bench{"rms", measure_rms}};
+    Bench{"rms", measure_rms},         Bench{"bundles", measure_bundles}};
 
 }  // namespace luxel::bench

@@ -47,15 +47,13 @@ std::vector<uint32_t> texels_to_trace(const validate::Prepared& p) {
 
 /// Processor seconds of making and tracing the rays of all texels; the least of all rounds.
 struct BundleSeconds {
-  double gather = 1e30;    ///< as gather traces them
-  double coherent = 1e30;  ///< the same rays in packets that are declared coherent
+  double hybrid = 1e30;  ///< gather's rays in packets that are not declared coherent
+  double gather = 1e30;  ///< as gather traces them: in scenes of few triangles in coherent packets
   double by_embree = 1e30, projected = 1e30;  ///< bundles
 
   std::array<std::pair<std::string_view, double>, 4> named() const {
-    return {{{"gather", gather},
-             {"coherent", coherent},
-             {"bundles", by_embree},
-             {"projected", projected}}};
+    return {
+        {{"hybrid", hybrid}, {"gather", gather}, {"bundles", by_embree}, {"projected", projected}}};
   }
 };
 
@@ -68,8 +66,8 @@ BundleSeconds time_bundles(const BundleTrace& in, std::span<const uint32_t> texe
   };
   BundleSeconds out;
   for (int round = 0; round < kBundleRounds; ++round) {
-    timed(out.gather, [&] { trace_as_gather(in, texels, trace::Packets::any); });
-    timed(out.coherent, [&] { trace_as_gather(in, texels, trace::Packets::bundles); });
+    timed(out.hybrid, [&] { trace_as_gather(in, texels, trace::Packets::any); });
+    timed(out.gather, [&] { trace_as_gather(in, texels, trace::Packets::alike); });
     timed(out.by_embree, [&] { trace_bundles(in, bundles, BundleTracer::embree); });
     timed(out.projected, [&] { trace_bundles(in, bundles, BundleTracer::projection); });
   }
@@ -105,7 +103,7 @@ void add_bundle_row(const BundleScene& scene, int resolution, double rays, const
   }
   row.push_back(fmt::format("{:.0f}", bundle_size));
   row.push_back(share > 0 ? fmt::format("{:.0f} %", 100 * share) : "");
-  for (const double seconds : {s.coherent, s.by_embree, s.projected})
+  for (const double seconds : {s.by_embree, s.projected})
     row.push_back(share > 0 ? fmt::format("{:.2f}", time_left(share, seconds, s.gather)) : "");
   table.rows.push_back(row), table.json.push_back(json);
 }
@@ -136,10 +134,9 @@ Status measure_bundled_map(const BundleScene& scene, int resolution, Table& tabl
 
 Result<Table> measure_bundles(const std::filesystem::path& shared, int threads) {
   const ThreadLimit limit(threads);
-  Table table =
-      new_table("bundles", {"scene", "map", "gather, Mrays/s", "coherent, Mrays/s",
-                            "bundles, Mrays/s", "projected, Mrays/s", "rays in a bundle",
-                            "rays / bake", "bake, coherent", "bake, bundles", "bake, projected"});
+  Table table = new_table("bundles", {"scene", "map", "hybrid, Mrays/s", "gather, Mrays/s",
+                                      "bundles, Mrays/s", "projected, Mrays/s", "rays in a bundle",
+                                      "rays / bake", "bake, bundles", "bake, projected"});
   for (const BundleScene& scene : bundle_scenes(shared)) {
     if (!std::filesystem::exists(scene.file)) {
       table.notes.push_back(scene.file.string() + " is not on this machine: left out");

@@ -42,12 +42,18 @@ TEST_P(ViewOfABake, IsWhatRenderDraws) {
     const CommandResult r = view(bake + " --offscreen --size 60x45 --play " + events.string() +
                                  " --screenshot " + (s.path / "played.png").string());
     EXPECT_EQ(r.code, 0) << r.err;
-    return slurp(s.path / "played.png");
+    return png_at(s.path / "played.png");
+  };
+  const auto apart = [](const image::Image& a, const image::Image& b) {
+    const image::Image d = image::flip(a, b);
+    return std::accumulate(d.data.begin(), d.data.end(), 0.0) / double(d.data.size());
   };
   const std::string up = R"({"at": 0, "key": "e"}, {"at": 1, "key_up": "e"})";
   const std::string down = R"(, {"at": 1, "key": "q"}, {"at": 2, "key_up": "q"})";
-  EXPECT_EQ(played(up + down), played(""));
-  EXPECT_NE(played(up), played(""));
+  // The camera comes back to the last bits of its place: a few pixels may be rounded otherwise.
+  const image::Image still = played("");
+  EXPECT_LT(apart(played(up + down), still), 0.001);
+  EXPECT_GT(apart(played(up), still), 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ViewOfABake,

@@ -27,7 +27,7 @@ struct FlatTriangle {
   Vec3 middle() const { return (corners.a + corners.b + corners.c) * (1 / 3.0f); }
 };
 
-/// Of the two sides of one sheet the first stands for both.
+/// The first of the two sides of one sheet stands for both.
 std::vector<FlatTriangle> flat_triangles(const scene::Scene& scene) {
   std::vector<FlatTriangle> out;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {

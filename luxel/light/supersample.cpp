@@ -69,7 +69,7 @@ int samples_per_point(int samples) { return std::max(std::min(samples, 8), sampl
 
 /// Points of a texel at a chart's border, when it is asked whether light varies.
 constexpr int kBorderPoints = 8;
-/// And of one where a fleck of sun may be, which can be small.
+/// Points of a texel where a fleck of sun may be, which can be small.
 constexpr int kFleckPoints = 16;
 
 /// Buffers of one thread.

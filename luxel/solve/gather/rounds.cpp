@@ -19,8 +19,8 @@ constexpr double kDirectShare = 0.25;
 /// What noise may have of an error when texels cost more than the rest of its square: half of it.
 constexpr float kNoiseWithTexels = 0.70710678f;
 constexpr double kNoiseWithTexels2 = 0.5;
-/// Of the squared noise that is allowed. A plan that is right to a few per cent ends there at once,
-/// and needs no other round for the rest.
+/// The part of the squared noise that is allowed at which plans aim. A plan that is right to a few
+/// per cent ends there at once, and needs no other round for the rest.
 constexpr double kAimedAt = 0.94;
 /// Over the square of the error that is asked for. What is nearly reached takes few rays.
 constexpr double kNoiseWorthAGuide = 10;

@@ -1,4 +1,4 @@
-// Which directions are worth more rays, as a few rays of every neighbourhood tell.
+// The making of a guide: a few rays of every neighbourhood tell where others are worth most.
 //
 // Neighbours of one chart see nearly the same: they share what is known of how much rays of each
 // cell differ (cell_guide.h). [Silvennoinen19] guides rays of lightmaps by densities that are

@@ -42,8 +42,8 @@ struct TrueNoise {
   double share_of_direct = 0;  ///< what direct light has of it
 };
 
-/// What is true of the sum of variances. Some hundred elements are chosen, half of
-/// them in proportion to what they have of that sum. Of m elements with alike variances it is known
+/// The true sum of variances. Some hundred elements are chosen, half of them in proportion to what
+/// they have of the sum of noise_variance. Of m elements with alike variances it is known
 /// to sqrt(2 / m), and its root to half of that: 3 % of 512, 1.6 % of 2,048. 1 where there is no
 /// noise. Errors: cancelled, disk full.
 Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transport::OwnSides& sides,

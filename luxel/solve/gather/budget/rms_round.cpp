@@ -87,8 +87,8 @@ Choices choices_of(const NoiseLeft& noise, double ray, int max_samples, size_t i
   return out;
 }
 
-/// Of some choices those that are the best for their cost, in steps: each lowers the variance more
-/// for a ray than what comes after it (the lower convex hull).
+/// The choices that are the best for their cost, in steps: each lowers the variance more for a ray
+/// than what comes after it (the lower convex hull).
 void add_steps(const Choices& choices, double variance, ElementSteps& out) {
   double left = variance, cost = 0;
   for (;;) {

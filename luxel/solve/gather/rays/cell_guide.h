@@ -1,4 +1,4 @@
-// Which cells of directions are worth more rays.
+// A guide of rays: cells of directions that are worth more of them.
 //
 // Light through a door comes from a small part of the hemisphere, and nearly all noise with it. The
 // cells of directions (element_rays.h) are strata: with n_c rays in cell c, the mean over all cells

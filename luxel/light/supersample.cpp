@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "luxel/atlas/neighbours.h"
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
@@ -98,19 +99,15 @@ void light_points(const PointScene& place, const Lights& lights, const DirectPar
 
 std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     const DirectLight& direct, float threshold) {
-  const int side = map.resolution;
   std::vector<uint8_t> uneven(map.texels.size());
   const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
   parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const int x = int(map.texels[i].x), y = int(map.texels[i].y);
-      for (int v = std::max(0, y - 1); v <= std::min(side - 1, y + 1) && !uneven[i]; ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(side - 1, x + 1) && !uneven[i]; ++u) {
-          const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
-          if (j == atlas::kNone || j == i || chart_of(i) != chart_of(j)) continue;
-          uneven[i] = differ({direct.irradiance[i], direct.variance[i]},
-                             {direct.irradiance[j], direct.variance[j]}, threshold);
-        }
+      atlas::for_neighbours(map, i, 1, [&](uint32_t j) {
+        if (uneven[i] || j == i || chart_of(i) != chart_of(j)) return;
+        uneven[i] = differ({direct.irradiance[i], direct.variance[i]},
+                           {direct.irradiance[j], direct.variance[j]}, threshold);
+      });
     }
   });
   std::vector<uint32_t> out;
@@ -232,19 +229,14 @@ Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& para
 /// are marked now. In the order of the map.
 std::vector<uint32_t> beside(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                              std::span<const uint32_t> which, std::vector<uint8_t>& asked) {
-  const int side = map.resolution;
   const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
   std::vector<uint32_t> out;
-  for (const uint32_t i : which) {
-    const int x = int(map.texels[i].x), y = int(map.texels[i].y);
-    for (int v = std::max(0, y - 1); v <= std::min(side - 1, y + 1); ++v)
-      for (int u = std::max(0, x - 1); u <= std::min(side - 1, x + 1); ++u) {
-        const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
-        if (j == atlas::kNone || asked[j] || chart_of(i) != chart_of(j)) continue;
-        asked[j] = 1;
-        out.push_back(j);
-      }
-  }
+  for (const uint32_t i : which)
+    atlas::for_neighbours(map, i, 1, [&](uint32_t j) {
+      if (asked[j] || chart_of(i) != chart_of(j)) return;
+      asked[j] = 1;
+      out.push_back(j);
+    });
   std::ranges::sort(out);
   return out;
 }

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "luxel/atlas/neighbours.h"
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/error_p95.h"
-#include "luxel/solve/gather/budget/neighbours.h"
 
 namespace luxel::gather {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/atlas/neighbours.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/budget/error_p95.h"
-#include "luxel/solve/gather/budget/neighbours.h"
 #include "luxel/solve/gather/budget/texel_error.h"
 #include "luxel/solve/gather/gather_test_support.h"
 #include "luxel/solve/gather/trace/trace_hits.h"

@@ -5,10 +5,10 @@
 #include <ctime>
 #include <numeric>
 
+#include "luxel/atlas/neighbours.h"
 #include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/adaptive.h"
-#include "luxel/solve/gather/budget/neighbours.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 

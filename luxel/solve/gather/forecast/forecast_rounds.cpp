@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "luxel/atlas/neighbours.h"
 #include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/error_p95.h"
 #include "luxel/solve/gather/budget/expected_rms.h"
-#include "luxel/solve/gather/budget/neighbours.h"
 #include "luxel/solve/gather/budget/rms_round.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
 #include "luxel/solve/gather/trace/trace_hits.h"

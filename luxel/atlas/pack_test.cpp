@@ -71,19 +71,24 @@ ChartPosition topmost_by_trying(const Grid& taken, const Mask& mask) {
   return {-1, -1};
 }
 
+/// A square, and the largest shapes to pack into it.
+struct PackCase {
+  int side, width, height;
+};
+
 /// Packs until nothing finds room; every place must be that of the plain search.
-void pack_both_ways(uint64_t seed, int& placed) {
-  // 100 columns: two words, the second one partly outside. Shapes on both sides of the height from
-  // which on bands of rows are tested first.
-  constexpr int kSide = 100;
+void pack_both_ways(const PackCase& c, uint64_t seed, int& placed) {
+  const int side = c.side;
   RandomStream random(seed);
-  Strip strip(kSide);
-  Grid taken(kSide, std::vector<bool>(kSide));
+  Strip strip(side);
+  Grid taken;
+  taken.assign(size_t(side), std::vector<bool>(size_t(side)));
   for (int k = 0; k < 20; ++k) {
-    const int width = 3 + int(random.next() * 30), height = 3 + int(random.next() * 45);
+    const int width = 3 + int(random.next() * float(c.width)),
+              height = 3 + int(random.next() * float(c.height));
     const Mask mask = random_mask(width, height, random);
     const ChartPosition expected = topmost_by_trying(taken, mask);
-    const ChartPosition found = strip.topmost(make_shape(mask), 0, kSide);
+    const ChartPosition found = strip.topmost(make_shape(mask), 0, side);
     ASSERT_EQ(found.x, expected.x) << "seed " << seed << ", " << width << " x " << height;
     ASSERT_EQ(found.y, expected.y) << "seed " << seed << ", " << width << " x " << height;
     if (found.y < 0) continue;
@@ -92,15 +97,21 @@ void pack_both_ways(uint64_t seed, int& placed) {
     for (const auto& [x, y] : cells_of(mask, found))
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
-          if (std::min(x + dx, y + dy) >= 0 && std::max(x + dx, y + dy) < kSide)
+          if (std::min(x + dx, y + dy) >= 0 && std::max(x + dx, y + dy) < side)
             taken[size_t(y + dy)][size_t(x + dx)] = true;
   }
 }
 
 TEST(Pack, FindsThePlaceThatTryingEveryTexelFinds) {
+  // Two words, the second one partly outside. Shapes on both sides of the height from which on
+  // bands of rows are tested first.
   int placed = 0;
-  for (uint64_t seed = 1; seed <= 40; ++seed) pack_both_ways(seed, placed);
+  for (uint64_t seed = 1; seed <= 40; ++seed) pack_both_ways({100, 30, 45}, seed, placed);
   EXPECT_GE(placed, 400);
+  // Four words, and runs of more than two.
+  placed = 0;
+  for (uint64_t seed = 1; seed <= 10; ++seed) pack_both_ways({200, 160, 20}, seed, placed);
+  EXPECT_GE(placed, 100);
 }
 
 TEST(Pack, TakesTheDirectionThatFits) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace luxel::atlas {
 namespace {
@@ -12,55 +13,83 @@ constexpr int kBand = 8;
 /// Lower shapes are found as fast without bands, which cost time to keep.
 constexpr int kBandShape = 32;
 
-int log2_floor(int n) { return int(std::bit_width(unsigned(n))) - 1; }
+/// Visits the numbers below a count, each far from those just before it: in the order of their
+/// reversed bits.
+template <class Visit>
+void for_each_spread(size_t count, const Visit& visit) {
+  const int bits = int(std::bit_width(count));
+  for (size_t k = 0; k < size_t(1) << bits; ++k) {
+    size_t turned = 0;
+    for (int i = 0; i < bits; ++i) turned |= (k >> i & 1) << (bits - 1 - i);
+    if (turned < count) visit(turned);
+  }
+}
+
+/// How many bits the longest run of clear bits has.
+int longest_clear_run(std::span<const uint64_t> bits) {
+  int longest = 0, run = 0;  // `run`: those that end where a word begins
+  for (const uint64_t word : bits) {
+    if (word == 0) {
+      run += 64;
+      continue;
+    }
+    longest = std::max(longest, run + std::countr_zero(word));
+    run = std::countl_zero(word);
+    // Whether a run within the word is longer.
+    uint64_t begins = ~word;  // where at least `have` clear bits begin
+    for (int have = 1; begins != 0 && have <= longest;) {
+      const int step = std::min(have, longest + 1 - have);
+      begins &= begins >> step, have += step;
+    }
+    for (; begins != 0; begins &= begins >> 1) ++longest;
+  }
+  return std::max(longest, run);
+}
 
 /// The leftmost free column for a shape with its top at row y, or -1.
 int free_column(const BitRows& rows, const Shape& shape, int y, std::vector<uint64_t>& blocked) {
-  // The longest runs come first: one that is too full refuses the row before columns are looked at.
+  // Long runs come first: one that is too full refuses the row before columns are looked at.
   constexpr size_t kQuick = 24;
   for (size_t r = 0; r < std::min(kQuick, shape.runs.size()); ++r)
     if (rows.too_full(y + shape.runs[r].row, shape.runs[r].columns)) return -1;
+  // The first leaves few words of columns, of which each is tested until it is full.
   std::fill(blocked.begin(), blocked.end(), 0);
-  for (const Shape::Run& run : shape.runs) {
-    rows.block(y + run.row, run.columns, blocked);
-    if (std::all_of(blocked.begin(), blocked.end(), [](uint64_t w) { return w == kFull; }))
-      return -1;
+  if (!shape.runs.empty()) rows.block(y + shape.runs[0].row, shape.runs[0].columns, blocked);
+  for (size_t w = 0; w < blocked.size(); ++w) {
+    uint64_t word = blocked[w];
+    for (size_t r = 1; r < shape.runs.size() && word != kFull; ++r)
+      word |= rows.blocked_word(y + shape.runs[r].row, shape.runs[r].columns, w);
+    if (word != kFull) return int(64 * w) + std::countr_one(word);
   }
-  for (size_t w = 0; w < blocked.size(); ++w)
-    if (blocked[w] != kFull) return int(64 * w) + std::countr_one(blocked[w]);
   return -1;
 }
 
 }  // namespace
 
 Shape make_shape(const Mask& mask) {
-  Shape shape{mask.width, mask.height, {}};
+  std::vector<Shape::Run> by_row;
   for (int j = 0; j < mask.height; ++j)
-    for (const Span run : mask.rows[size_t(j)]) shape.runs.push_back({j, run});
-  std::stable_sort(shape.runs.begin(), shape.runs.end(), [](const auto& a, const auto& b) {
-    return a.columns.end - a.columns.begin > b.columns.end - b.columns.begin;
-  });
+    for (const Span run : mask.rows[size_t(j)]) by_row.push_back({j, run});
+  const auto length_of = [](const Shape::Run& r) { return r.columns.end - r.columns.begin; };
+  int longest = 0;
+  for (const Shape::Run& run : by_row) longest = std::max(longest, length_of(run));
+  // Long runs fail soonest, and neighbouring rows are much alike: each run lies far from those
+  // before it.
+  Shape shape{mask.width, mask.height, {}};
+  for (const bool is_long : {true, false})
+    for_each_spread(by_row.size(), [&](size_t r) {
+      if ((2 * length_of(by_row[r]) >= longest) == is_long) shape.runs.push_back(by_row[r]);
+    });
   return shape;
 }
 
 BitRows::BitRows(int side) : words_((size_t(side) + 63) / 64), count_(side), levels_(1) {
   while (levels_ < 7 && (1 << levels_) <= side) ++levels_;
   bits_.assign(size_t(count_) * size_t(levels_) * words_, 0);
-  free_level_.assign(size_t(count_), levels_ - 1);
+  longest_clear_.resize(size_t(count_));
   if (side % 64 != 0)
     for (int y = 0; y < count_; ++y) row(y, 0)[words_ - 1] = kFull << (side % 64);
-  for (int y = 0; y < count_; ++y) refresh(y);
-}
-
-int BitRows::level_of(Span columns) const {
-  return std::min(levels_ - 1, log2_floor(columns.end - columns.begin));
-}
-
-uint64_t* BitRows::row(int y, int level) {
-  return &bits_[(size_t(y) * size_t(levels_) + size_t(level)) * words_];
-}
-const uint64_t* BitRows::row(int y, int level) const {
-  return &bits_[(size_t(y) * size_t(levels_) + size_t(level)) * words_];
+  for (int y = 0; y < count_; ++y) refresh(y, {0, side});
 }
 
 void BitRows::set(int y, Span columns) {
@@ -73,29 +102,29 @@ void BitRows::set(int y, Span columns) {
   }
 }
 
-void BitRows::intersect(const BitRows& rows, int y, int row_count, BitRows& all) {
+void BitRows::intersect(const BitRows& rows, int y, int row_count, Span changed, BitRows& all) {
+  const auto [first, last] = rows.words_of(changed);
   uint64_t* bits = all.row(y, 0);
-  std::copy_n(rows.row(y, 0), rows.words_, bits);
+  std::copy(rows.row(y, 0) + first, rows.row(y, 0) + last, bits + first);
   for (int i = y + 1; i < std::min(y + row_count, rows.count_); ++i)
-    for (size_t w = 0; w < rows.words_; ++w) bits[w] &= rows.row(i, 0)[w];
-  all.refresh(y);
+    for (size_t w = first; w < last; ++w) bits[w] &= rows.row(i, 0)[w];
+  all.refresh(y, changed);
 }
 
-void BitRows::refresh(int y) {
-  free_level_[size_t(y)] = -1;
-  for (int k = 0; k < levels_; ++k) {
+void BitRows::refresh(int y, Span changed) {
+  // A level's bits look at no more than 63 columns to the right of their own.
+  auto [first, last] = words_of(changed);
+  if (first > 0) --first;
+  for (int k = 1; k < levels_; ++k) {
     uint64_t* bits = row(y, k);
-    if (k > 0) {
-      const uint64_t* below = row(y, k - 1);
-      const int shift = 1 << (k - 1);
-      for (size_t w = 0; w < words_; ++w) {
-        const uint64_t right = w + 1 < words_ ? below[w + 1] : kFull;
-        bits[w] = below[w] | below[w] >> shift | right << (64 - shift);
-      }
+    const uint64_t* below = row(y, k - 1);
+    const int shift = 1 << (k - 1);
+    for (size_t w = first; w < last; ++w) {
+      const uint64_t right = w + 1 < words_ ? below[w + 1] : kFull;
+      bits[w] = below[w] | below[w] >> shift | right << (64 - shift);
     }
-    for (size_t w = 0; w < words_; ++w)
-      if (bits[w] != kFull) free_level_[size_t(y)] = k;
   }
+  longest_clear_[size_t(y)] = longest_clear_run({row(y, 0), words_});
 }
 
 void BitRows::block(int y, Span columns, std::vector<uint64_t>& blocked) const {
@@ -123,6 +152,8 @@ void BitRows::add_shifted(const uint64_t* bits, int offset, std::vector<uint64_t
 void Strip::take_with_gutter(const Mask& mask, ChartPosition place, int gutter) {
   const int top = std::max(0, place.y - gutter);
   const int bottom = std::min(side(), place.y + mask.height + gutter);
+  const Span changed{std::max(0, place.x - gutter),
+                     std::min(side(), place.x + mask.width + gutter)};
   for (int y = top; y < bottom; ++y) {
     const int first = std::max(0, y - place.y - gutter);
     const int last = std::min(mask.height - 1, y - place.y + gutter);
@@ -130,12 +161,12 @@ void Strip::take_with_gutter(const Mask& mask, ChartPosition place, int gutter) 
       for (const Span run : mask.rows[size_t(j)])
         taken_.set(y, {std::max(0, place.x + run.begin - gutter),
                        std::min(side(), place.x + run.end + gutter)});
-    taken_.refresh(y);
+    taken_.refresh(y, changed);
   }
   // Bands that know of fewer texels only say no less often.
   if (mask.height < kBandShape) return;
   for (int y = std::max(0, top - kBand + 1); y < bottom; ++y)
-    BitRows::intersect(taken_, y, kBand, bands_);
+    BitRows::intersect(taken_, y, kBand, changed, bands_);
 }
 
 ChartPosition Strip::topmost(const Shape& shape, int first, int last) const {

@@ -1,14 +1,17 @@
 // The square's taken texels, and where a shape finds room among them.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "luxel/atlas/pack.h"
 
 namespace luxel::atlas {
 
-/// A mask's runs in the order of testing: the widest first, they fail soonest.
+/// A mask's runs in the order of testing: those first that fail soonest.
 struct Shape {
   struct Run {
     int row = 0;
@@ -29,25 +32,55 @@ class BitRows {
   size_t words() const { return words_; }
   int count() const { return count_; }
   void set(int y, Span columns);
-  /// Row y of `all` becomes the columns that are set in each of `rows` rows from y on.
-  static void intersect(const BitRows& rows, int y, int row_count, BitRows& all);
-  /// Builds the higher levels of a row after its bits changed.
-  void refresh(int y);
+  /// Row y of `all` becomes the columns that are set in each of `rows` rows from y on, of which no
+  /// others than `changed` were set since the last time. Bits are set, never cleared.
+  static void intersect(const BitRows& rows, int y, int row_count, Span changed, BitRows& all);
+  /// Builds the higher levels of a row of which no others than these columns were set.
+  void refresh(int y, Span changed);
   /// Whether the row has no run of clear bits as long as the columns: a quick way to say no.
-  bool too_full(int y, Span columns) const { return free_level_[size_t(y)] < level_of(columns); }
+  bool too_full(int y, Span columns) const {
+    return longest_clear_[size_t(y)] < columns.end - columns.begin;
+  }
   /// Sets in `blocked` the offsets at which the columns meet set bits of row y.
   void block(int y, Span columns, std::vector<uint64_t>& blocked) const;
+  /// The word of these offsets that begins at 64 * word.
+  uint64_t blocked_word(int y, Span columns, size_t word) const {
+    const int level = level_of(columns), step = 1 << level;
+    const uint64_t* bits = row(y, level);
+    uint64_t out = bits_from(bits, word, columns.end - step);
+    for (int at = columns.begin; at + step < columns.end; at += step)
+      out |= bits_from(bits, word, at);
+    return out;
+  }
 
  private:
-  int level_of(Span columns) const;
-  uint64_t* row(int y, int level);
-  const uint64_t* row(int y, int level) const;
+  int level_of(Span columns) const {
+    return std::min(levels_ - 1, int(std::bit_width(unsigned(columns.end - columns.begin))) - 1);
+  }
+  size_t begin_of(int y, int level) const {
+    return (size_t(y) * size_t(levels_) + size_t(level)) * words_;
+  }
+  uint64_t* row(int y, int level) { return &bits_[begin_of(y, level)]; }
+  const uint64_t* row(int y, int level) const { return &bits_[begin_of(y, level)]; }
+  /// Words that hold these columns.
+  std::pair<size_t, size_t> words_of(Span columns) const {
+    return {size_t(columns.begin) / 64, std::min(words_, size_t(columns.end + 63) / 64)};
+  }
+  /// The 64 bits of a row from column 64 * word + offset on.
+  uint64_t bits_from(const uint64_t* bits, size_t word, int offset) const {
+    constexpr uint64_t kSet = ~uint64_t(0);
+    const size_t at = word + size_t(offset) / 64;
+    const int shift = offset % 64;
+    if (at >= words_) return kSet;
+    if (shift == 0) return bits[at];
+    return bits[at] >> shift | (at + 1 < words_ ? bits[at + 1] : kSet) << (64 - shift);
+  }
   void add_shifted(const uint64_t* bits, int offset, std::vector<uint64_t>& blocked) const;
 
   size_t words_;
   int count_, levels_;
   std::vector<uint64_t> bits_;
-  std::vector<int> free_level_;  ///< per row, the highest level with a clear bit; -1: none
+  std::vector<int> longest_clear_;  ///< per row, the longest run of clear bits
 };
 
 /// A square in which texels are taken and never given back.

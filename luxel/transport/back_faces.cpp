@@ -126,12 +126,19 @@ bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3
 
 bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                     Vec3 normal, float diagonal_m) {
-  constexpr int kFirstRays = 8, kRays = 32;
-  Look look = look_from(tracer, from, normal, kFirstRays);
-  const BackFaces few = backs_of(scene, look);
-  if (all_backs(few) == 0) return true;
-  if (is_enclosed(few)) return false;
-  look_further(tracer, from, normal, kRays, look);
+  constexpr int kFewRays = 8, kRays = 32;
+  Look look = look_from(tracer, from, normal, kFewRays);
+  BackFaces seen = backs_of(scene, look);
+  if (all_backs(seen) == 0) return true;
+  if (is_enclosed(seen)) return false;
+  while (seen.rays < kRays) {
+    look_further(tracer, from, normal, size_t(seen.rays + kFewRays), look);
+    seen = backs_of(scene, look);
+    // Even if all that is left were backs.
+    const int left = kRays - seen.rays;
+    const BackFaces most{kRays, seen.one_sided + left, seen.double_sided};
+    if (!is_hidden(most) && !sees_nearly_backs_alone(most)) return true;
+  }
   return !is_enclosed_by(scene, tracer, from, normal, diagonal_m, look);
 }
 

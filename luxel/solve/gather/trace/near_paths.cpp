@@ -72,15 +72,22 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
   return width;
 }
 
-bool goes_on(const NearScene& in, const NearPath& path) {
-  const trace::Hit& hit = path.hit;
-  if (!hit.found() || max_component(path.throughput) <= 0) return false;
+MapAnswers map_answers(const NearScene& in, const trace::Hit& hit) {
+  const scene::Material& material = scene::material_at(in.scene, hit.point());
   // What scatters light through shines by the light behind it, which the map knows.
-  if (scene::material_at(in.scene, hit.point()).diffuse_transmission > 0) return false;
-  if (hit.back_face) return scene::reflects_from_behind(scene::material_at(in.scene, hit.point()));
-  return hit.t <
-             kNearTexels * in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)] ||
-         (in.sides && !transport::has_own_texel(*in.sides, hit.point()));
+  if (material.diffuse_transmission > 0) return MapAnswers::yes;
+  if (hit.back_face)
+    return scene::reflects_from_behind(material) ? MapAnswers::no : MapAnswers::yes;
+  const float width_m = in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)];
+  if (hit.t < kNearTexels * width_m) return MapAnswers::no;
+  return in.sides ? MapAnswers::where_own : MapAnswers::yes;
+}
+
+bool goes_on(const NearScene& in, const NearPath& path) {
+  if (!path.hit.found() || max_component(path.throughput) <= 0) return false;
+  const MapAnswers answers = map_answers(in, path.hit);
+  return answers == MapAnswers::no || (answers == MapAnswers::where_own &&
+                                       !transport::has_own_texel(*in.sides, path.hit.point()));
 }
 
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {

@@ -79,7 +79,11 @@ uint64_t follow_near(const NearScene& in, NearBuffers& buffers, const End& end);
 /// come first in buffers.going_on, with throughput 0. `depth`: how many steps there have been.
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers);
 
-/// Whether the map has no answer for the place that a path has met.
+/// Whether the map has an answer for a place that a path has met; where_own: if own_lookup() reads
+/// something there.
+enum class MapAnswers : uint8_t { yes, no, where_own };
+MapAnswers map_answers(const NearScene& in, const trace::Hit& hit);
+/// Whether the map has no answer for the place that a path has met, and light comes along the path.
 bool goes_on(const NearScene& in, const NearPath& path);
 
 template <class End>

@@ -1,6 +1,7 @@
 #include "luxel/solve/gather/trace/sort_rays.h"
 
 #include <algorithm>
+#include <ranges>
 
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
@@ -73,24 +74,77 @@ void add_escaped(const RayScene& in, const EscapedLight& light, size_t element, 
   add_sky(in.layers, light.sum, element, out);
 }
 
+bool shows_light(const RayScene& in, const trace::Hit& hit) {
+  return hit.found() &&
+         (!hit.back_face || scene::reflects_from_behind(scene::material_at(in.scene, hit.point())));
+}
+
+/// Whether the map is not asked about what a ray has met: its path goes on from there.
+bool passes_map_by(const RayScene& in, const trace::Hit& hit) {
+  return in.near != nullptr && map_answers(*in.near, hit) == MapAnswers::no;
+}
+
+/// Begins to look up what one of the batch's rays has met.
+void look_up(const RayScene& in, RayBuffers& buffers, uint32_t ray) {
+  PlacesMet& places = buffers.places;
+  const trace::Hit& hit = buffers.hits[ray];
+  PlacesMet::OfRay& out = places.of_ray[ray] = {};
+  if (!shows_light(in, hit)) return;
+  out.place = transport::lookup_place(in.atlas, hit.point());
+  if (!in.sides || !in.sides->is_mixed(out.place.base) || passes_map_by(in, hit)) return;
+  places.beside_walls.push_back(ray), places.points.push_back(hit.point());
+}
+
+/// Looks up beside walls.
+void look_up_beside_walls(const RayScene& in, PlacesMet& places) {
+  if (places.points.empty()) return;
+  places.own.resize(places.points.size());
+  transport::own_lookups(*in.sides, places.points, places.lookups, places.own);
+  for (size_t i = 0; i < places.own.size(); ++i) {
+    PlacesMet::OfRay& out = places.of_ray[places.beside_walls[i]];
+    out = {places.own[i], places.own[i].base == transport::kReadsNothing.base};
+  }
+}
+
+/// Looks up what some rays of the batch have met, `ray` going through their numbers.
+template <class Rays>
+void find_places(const RayScene& in, RayBuffers& buffers, const Rays& rays) {
+  PlacesMet& places = buffers.places;
+  places.of_ray.resize(buffers.hits.size());
+  places.beside_walls.clear(), places.points.clear();
+  for (const uint32_t ray : rays) look_up(in, buffers, ray);
+  look_up_beside_walls(in, places);
+}
+
+/// The path that begins where the batch's k-th ray ends.
+NearPath path_from(const RayScene& in, const RayBuffers& buffers, size_t k, size_t element,
+                   Samples samples) {
+  NearPath path;
+  path.element = uint32_t(element), path.ray = uint32_t(k), path.sample = buffers.batch.sample[k];
+  path.seed = hash64(in.seed ^ 0x7ea4, element);
+  path.second_half = buffers.batch.in_second_half(k, samples);
+  path.doublings = buffers.batch.doublings_of(k);
+  if (!buffers.tint.empty()) path.throughput = buffers.tint[k];
+  path.hit = buffers.hits[k], path.is_plain = !path.hit.back_face;
+  return path;
+}
+
+/// Whether the batch's k-th ray is followed on.
+bool is_followed(const RayScene& in, const RayBuffers& buffers, size_t k) {
+  if (!in.near || (!buffers.tint.empty() && max_component(buffers.tint[k]) <= 0)) return false;
+  const MapAnswers answers = map_answers(*in.near, buffers.hits[k]);
+  return answers == MapAnswers::no ||
+         (answers == MapAnswers::where_own && buffers.places.of_ray[k].has_no_texel);
+}
+
 /// How the batch's k-th ray has ended; one to be followed on is added to buffers.near.paths.
 RayEnd end_of(const RayScene& in, RayBuffers& buffers, size_t k, size_t element, Samples samples) {
   const trace::Hit& hit = buffers.hits[k];
   if (!hit.found()) return RayEnd::escaped;
-  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(in.scene, hit.point())))
-    return RayEnd::back;
-  if (in.near != nullptr) {
-    NearPath path;
-    path.element = uint32_t(element), path.ray = uint32_t(k), path.sample = buffers.batch.sample[k];
-    path.seed = hash64(in.seed ^ 0x7ea4, element);
-    path.second_half = buffers.batch.in_second_half(k, samples);
-    path.doublings = buffers.batch.doublings_of(k);
-    if (!buffers.tint.empty()) path.throughput = buffers.tint[k];
-    path.hit = hit, path.is_plain = !hit.back_face;
-    if (goes_on(*in.near, path)) {
-      buffers.near.paths.push_back(path);
-      return RayEnd::followed;
-    }
+  if (!shows_light(in, hit)) return RayEnd::back;
+  if (is_followed(in, buffers, k)) {
+    buffers.near.paths.push_back(path_from(in, buffers, k, element, samples));
+    return RayEnd::followed;
   }
   return hit.back_face ? RayEnd::behind : RayEnd::hit;
 }
@@ -125,7 +179,7 @@ void take_traced(const RayScene& in, const RayBuffers& buffers, size_t k, RayEnd
                             ? kNoTint
                             : pack_tint(buffers.tint[k], hash64(element, sample ^ 0x7147u));
   tile.hits.entries.push_back(
-      store(in, buffers.hits[k].point(),
+      store(buffers.places.of_ray[k].place,
             {tint, buffers.batch.in_second_half(k, samples), buffers.batch.doublings_of(k)}));
 }
 
@@ -158,6 +212,7 @@ StoredHit store(const RayScene& in, const scene::SurfacePoint& p, StoredHit::Ray
 void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                TracedHits& out, RayTile& tile) {
   const size_t count = buffers.batch.rays.size();
+  find_places(in, buffers, std::views::iota(uint32_t(0), uint32_t(count)));
   for (size_t k = 0; k < count; ++k) {
     const RayEnd end = end_of(in, buffers, k, element, samples);
     tile.ends.push_back(end);
@@ -175,6 +230,7 @@ void merge_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples
   const std::span<RayEnd> ends = std::span(tile.ends).last(count);
   for (const RayEnd end : {RayEnd::back, RayEnd::behind, RayEnd::escaped})
     count_ends(end, int(count_of(before.ends, end)), element, out);
+  find_places(in, buffers, buffers.retraced);
   size_t next = 0, hit = 0;
   // The hits of rays from `next` on, up to `end`, stay.
   const auto keep_up_to = [&](size_t end) {

@@ -9,7 +9,7 @@
 #include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/near_paths.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
-#include "luxel/transport/own_side.h"
+#include "luxel/transport/own_lookups.h"
 
 namespace luxel::gather {
 
@@ -41,6 +41,20 @@ struct OutsideLook {
   std::vector<Rgb> light;  ///< radiance
 };
 
+/// Where the map is read for what rays of the batch have met.
+struct PlacesMet {
+  struct OfRay {
+    transport::LookupPlace place;
+    bool has_no_texel = false;  ///< a wall leaves none on the place's own side
+  };
+  std::vector<OfRay> of_ray;  ///< of those that have met something the map has an answer for
+  // Beside walls they are looked up together.
+  std::vector<uint32_t> beside_walls;  ///< of the batch
+  std::vector<scene::SurfacePoint> points;
+  std::vector<transport::LookupPlace> own;
+  transport::LookupBuffers lookups;
+};
+
 /// Everything a worker needs, reused from element to element.
 struct RayBuffers : RetraceBuffers {
   NearBuffers near;                    ///< near.paths: those that wait to be followed on
@@ -48,6 +62,7 @@ struct RayBuffers : RetraceBuffers {
   HitTile other_hits, followed_hits;   ///< of a tile: than those of rays followed on, and those
   std::vector<uint32_t> ends_of;  ///< per element of a tile: one past the last of RayTile::ends
   OutsideLook outside;
+  PlacesMet places;
 };
 
 /// Where light at a point of the scene is read from the map, on its own side of every wall.

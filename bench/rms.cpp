@@ -12,13 +12,14 @@ namespace luxel::bench {
 namespace {
 
 constexpr std::array kAskedErrors{0.04, 0.02, 0.01, 0.005};
-/// Two bakes without a common random number judge: of 8,192 rays per texel each, or of so many in
-/// all where maps are large.
-constexpr int kMostJudgeSamples = 8192;
-constexpr double kJudgeRays = 1e8;
+/// Two bakes without a common random number judge: of 2,048 rays per texel each, or of so many in
+/// all where maps are large. Their own noise does not count (true_rms), and is less than that of
+/// the finest bake or about as much, so that thousands of texels tell its error to a few per cent.
+constexpr int kMostJudgeSamples = 2048;
+constexpr double kJudgeRays = 4e7;
 constexpr uint64_t kFirstJudgeSeed = 1001;
 /// Shadow rays and points of the judges, which are few where those of a bake may be many.
-constexpr int kJudgeShadowRays = 512, kJudgePoints = 256;
+constexpr int kJudgeShadowRays = 256, kJudgePoints = 64;
 
 struct SharedScene {
   std::string_view file;  ///< below shared/scenes

@@ -53,8 +53,7 @@ LookupPlace nearest_around(const TexelSpots& texels, const Spot& here, const Loo
       if (texel == atlas::kNone) continue;
       const float away = std::hypot(float(x - x0) - place.fx, float(y - y0) - place.fy);
       if (away >= nearest || !texels.sees(here, texels.spot(texel))) continue;
-      nearest = away,
-      best = {uint32_t((y + 1) * int(border_side(texels.in.map)) + x + 1), 0, 0};
+      nearest = away, best = {uint32_t((y + 1) * int(border_side(texels.in.map)) + x + 1), 0, 0};
     }
   return best;
 }
@@ -72,16 +71,23 @@ void find_spots(const OwnSides& sides, std::span<const scene::SurfacePoint> poin
     if (b.hits[i].found()) b.here[i].line_height = kLowHeight;
 }
 
+/// Texels beside walls are asked for again and again.
+Spot texel_spot(const TexelSpots& texels, uint32_t texel, LookupBuffers& b) {
+  if (b.known.empty()) return texels.spot(texel);
+  LookupBuffers::KnownSpot& known = b.known[texel % b.known.size()];
+  if (known.texel != texel) known = {texel, texels.spot(texel)};
+  return known.spot;
+}
+
 /// Looks which of their four texels the spots see.
 void find_own(const TexelSpots& texels, std::span<const LookupPlace> places, LookupBuffers& b) {
   b.four.assign(places.size(), {}), b.lines.clear(), b.rays.clear();
-  SpotMaker maker = texels.maker();
   for (uint32_t i = 0; i < places.size(); ++i) {
     const auto [x0, y0] = first_texel(texels.in, places[i]);
     for (uint32_t k = 0; k < 4; ++k) {
       const uint32_t texel = b.four[i].texel[k] = texels.at(x0 + int(k % 2), y0 + int(k / 2));
       if (texel == atlas::kNone) continue;
-      const Spot there = texels.spot(texel, maker);
+      const Spot there = texel_spot(texels, texel, b);
       if (is_far(b.here[i], there)) continue;
       b.lines.push_back({i, k, there}), b.rays.push_back(line_between(b.here[i], there));
     }
@@ -107,9 +113,8 @@ void own_lookups(const OwnSides& sides, std::span<const scene::SurfacePoint> poi
   find_own(texels, places, buffers);
   for (size_t i = 0; i < points.size(); ++i) {
     const LookupPlace own = nearest_own(places[i], buffers.four[i]);
-    places[i] = own.base != kReadsNothing.base
-                    ? own
-                    : nearest_around(texels, buffers.here[i], places[i]);
+    places[i] =
+        own.base != kReadsNothing.base ? own : nearest_around(texels, buffers.here[i], places[i]);
   }
 }
 

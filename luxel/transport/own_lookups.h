@@ -10,8 +10,14 @@
 
 namespace luxel::transport {
 
-/// What looking up needs, reused from call to call.
+/// What looking up in one map needs, reused from call to call.
 struct LookupBuffers {
+  /// Spots of texels that were asked for before.
+  struct KnownSpot {
+    uint32_t texel = atlas::kNone;
+    Spot spot;
+  };
+
   /// The place's four texels: those to the right have bit 0, those below bit 1.
   struct Four {
     std::array<uint32_t, 4> texel{};
@@ -22,6 +28,7 @@ struct LookupBuffers {
     uint32_t place, k;
     Spot there;
   };
+  std::vector<KnownSpot> known;  ///< as many as are to be remembered; none at first
   std::vector<Spot> here;
   std::vector<Four> four;
   std::vector<Line> lines;

@@ -19,8 +19,8 @@
 namespace luxel::gather {
 namespace {
 
-/// The last bounces on the light of an earlier bake end at this part of its error, beside which
-/// what is left does not show; or at this part of the light, if that is less.
+/// Where the error is known, the last bounces end at this part of it, beside which what is left
+/// does not show; on the light of an earlier bake at this part of the light, if that is less.
 constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;
 constexpr uint8_t kPunctualLayer = 0, kOtherLayer = 1, kReflectedLayer = 2;
 
@@ -43,9 +43,13 @@ SourceLayers source_layers(const light::Lights& lights) {
 
 /// The tolerance of the last bounces.
 float last_tolerance(const Request& in) {
-  if (!in.stores.earlier) return in.params.tolerance;
-  const double of_error = kPartOfError * in.stores.earlier->relative_error;
-  return std::max(in.params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
+  const GatherParams& params = in.params;
+  double rougher = 0;
+  if (in.stores.earlier)
+    rougher = std::min(kPartOfError * in.stores.earlier->relative_error, kRoughestFromEarlier);
+  else if (params.error_measure == ErrorMeasure::rms)
+    rougher = kPartOfError * double(params.max_error);
+  return std::max(params.tolerance, float(rougher));
 }
 
 /// The rays of an earlier bake. Where only what lies elsewhere changes them, they tell by how much

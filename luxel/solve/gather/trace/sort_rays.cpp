@@ -164,8 +164,8 @@ struct RaysOf {
 };
 
 /// Counts the end of a ray that was traced, and keeps its hit.
-void take_traced(const RayScene& in, const RayBuffers& buffers, size_t k, RayEnd end,
-                 const RaysOf& rays, TracedHits& out, RayTile& tile) {
+void take_traced(const RayBuffers& buffers, size_t k, RayEnd end, const RaysOf& rays,
+                 TracedHits& out, RayTile& tile) {
   const auto [element, samples] = rays;
   const bool counts = !is_guided(out, element);
   if (end == RayEnd::followed) {
@@ -216,7 +216,7 @@ void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples 
   for (size_t k = 0; k < count; ++k) {
     const RayEnd end = end_of(in, buffers, k, element, samples);
     tile.ends.push_back(end);
-    take_traced(in, buffers, k, end, {element, samples}, out, tile);
+    take_traced(buffers, k, end, {element, samples}, out, tile);
   }
   const std::span<const RayEnd> ends = std::span(tile.ends).last(count);
   add_escaped(in, escaped_light(in, buffers, samples, ends), element, out, tile);
@@ -245,7 +245,7 @@ void merge_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples
     const RayEnd known = before.ends[k];
     count_ends(known, -1, element, out);
     ends[k] = end_of(in, buffers, k, element, samples);
-    take_traced(in, buffers, k, ends[k], {element, samples}, out, tile);
+    take_traced(buffers, k, ends[k], {element, samples}, out, tile);
     const StoredHit* then = is_hit(known) ? &before.hits[hit++] : nullptr;
     const StoredHit* now = is_hit(ends[k]) ? &tile.hits.entries.back() : nullptr;
     note_change(in, then, now, element, out);

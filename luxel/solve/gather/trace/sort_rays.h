@@ -52,7 +52,10 @@ struct PlacesMet {
   std::vector<uint32_t> beside_walls;  ///< of the batch
   std::vector<scene::SurfacePoint> points;
   std::vector<transport::LookupPlace> own;
+  static constexpr size_t kKnownSpots = 4096;
   transport::LookupBuffers lookups;
+
+  PlacesMet() { lookups.known.resize(kKnownSpots); }
 };
 
 /// Everything a worker needs, reused from element to element.

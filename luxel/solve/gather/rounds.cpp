@@ -23,7 +23,7 @@ constexpr double kNoiseWithTexels2 = 0.5;
 /// per cent ends there at once, and needs no other round for the rest.
 constexpr double kAimedAt = 0.94;
 /// Over the square of the error that is asked for. What is nearly reached takes few rays.
-constexpr double kNoiseWorthAGuide = 10;
+constexpr double kNoiseWorthAGuide = 3;
 
 /// How many rays the next round may have, such that it and the last bounces end in time: tracing
 /// takes as long per ray as the last round, and bounces grow with the number of all rays.

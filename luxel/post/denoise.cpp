@@ -6,129 +6,13 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/post/grow_planes.h"
 #include "luxel/post/noise_level.h"
 #include "luxel/post/oidn.h"
 #include "luxel/post/outliers.h"
 
 namespace luxel::post {
 namespace {
-
-/// A plane through the light around a texel: E(u, v) = value + u slope_u + v slope_v, u and v in
-/// texels.
-struct Plane {
-  Rgb value, slope_u, slope_v;
-  float variance = 0;        ///< of the value's luminance
-  float slope_variance = 0;  ///< mean of both slopes'
-};
-
-/// Sums over a window: moments of weights and values, and of squared weights times variances.
-struct Moments {
-  float w = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
-  Rgb y{}, yu{}, yv{};
-  float s = 0, su = 0, sv = 0, suu = 0, suv = 0, svv = 0;
-
-  void add(const Neighbour& at, float weight, Rgb value, float variance) {
-    const float wu = weight * at.u, wv = weight * at.v;
-    w += weight, u += wu, v += wv;
-    uu += wu * at.u, uv += wu * at.v, vv += wv * at.v;
-    y += value * weight, yu += value * wu, yv += value * wv;
-    const float q = weight * weight * variance, qu = q * at.u, qv = q * at.v;
-    s += q, su += qu, sv += qv;
-    suu += qu * at.u, suv += qu * at.v, svv += qv * at.v;
-  }
-};
-
-/// Slopes are drawn to zero where positions spread by less than this [texels^2]: a row of texels
-/// has no slope across it.
-constexpr float kRidge = 0.02f;
-
-/// Weighted least squares. Both the value and the slopes are linear in the texels' values: the
-/// value is sum_j w_j (alpha + beta . x_j) y_j, hence its variance.
-Plane fit(const Moments& m) {
-  const float inverse = 1 / m.w;
-  const float u = m.u * inverse, v = m.v * inverse;
-  const Rgb y = m.y * inverse;
-  const float uu = m.uu * inverse - u * u + kRidge, vv = m.vv * inverse - v * v + kRidge;
-  const float uv = m.uv * inverse - u * v;
-  const float det = 1 / (uu * vv - uv * uv);
-  // Inverse of the spread, (a b; b c).
-  const float a = vv * det, b = -uv * det, c = uu * det;
-  const Rgb cu = m.yu * inverse - y * u, cv = m.yv * inverse - y * v;
-  Plane plane;
-  plane.slope_u = cu * a + cv * b;
-  plane.slope_v = cu * b + cv * c;
-  plane.value = y - plane.slope_u * u - plane.slope_v * v;
-
-  const float bu = -(a * u + b * v) * inverse, bv = -(b * u + c * v) * inverse;
-  const float alpha = inverse - bu * u - bv * v;
-  plane.variance = alpha * alpha * m.s + 2 * alpha * (bu * m.su + bv * m.sv) + bu * bu * m.suu +
-                   2 * bu * bv * m.suv + bv * bv * m.svv;
-  // Second moments of squared weights about the mean place.
-  const float tuu = m.suu - 2 * u * m.su + u * u * m.s;
-  const float tvv = m.svv - 2 * v * m.sv + v * v * m.s;
-  const float tuv = m.suv - u * m.sv - v * m.su + u * v * m.s;
-  plane.slope_variance = 0.5f * inverse * inverse *
-                         ((a * a + b * b) * tuu + 2 * b * (a + c) * tuv + (b * b + c * c) * tvv);
-  return plane;
-}
-
-/// What a texel shows to its neighbours, side by side in memory.
-struct Shown {
-  Rgb estimate;
-  float estimate_variance = 0;
-  Rgb value;  ///< its own, unfiltered
-  float variance = 0;
-};
-
-/// How well a neighbour's light agrees with the plane around a texel, 0 .. 1: the squared
-/// difference over its variance, in the channel where it is largest. `per_limit`: one over the
-/// largest ratio that counts, times each channel's variance over that of luminance.
-float agreement(const Plane& own, const Shown& other, Rgb per_limit, const Neighbour& at) {
-  const Rgb d = own.value + own.slope_u * at.u + own.slope_v * at.v - other.estimate;
-  const float expected =
-      own.variance + (at.u * at.u + at.v * at.v) * own.slope_variance + other.estimate_variance;
-  const float rest = 1 - max_component(d * d * per_limit) / expected;
-  return rest > 0 ? rest * (2 - rest) : 0.0f;
-}
-
-struct Round {
-  float radius = 0;           ///< of the windows, in texels
-  float max_deviations2 = 0;  ///< largest squared difference over its variance that counts
-};
-struct Planes {
-  std::vector<Plane> planes;  ///< per texel
-  std::vector<Shown> shown;   ///< what the others see of each: a buffer
-};
-
-/// One round: every texel's plane from the texels around it, weighted by how well the estimates of
-/// the round before agree. What is shown is made anew from the planes, which are then replaced.
-Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb> values,
-            const Round& round, Planes& now, Progress& progress) {
-  std::vector<Plane>& planes = now.planes;
-  std::vector<Shown>& shown = now.shown;
-  for (size_t i = 0; i < planes.size(); ++i)
-    shown[i] = {planes[i].value, planes[i].variance, values[i], noise.variance[i]};
-  parallel_for(values.size(), kBlockTexels, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    for (size_t i = begin; i < end; ++i) {
-      if (n.place[i].spacing <= 0 || noise.variance[i] <= 0) continue;
-      const Plane own = planes[i];
-      constexpr float kTiny = 1e-30f;  // a channel without noise agrees with its like alone
-      const auto per = [&](float channel) {
-        return 1 / (round.max_deviations2 * std::max(channel, kTiny));
-      };
-      const Rgb c = noise.per_channel[i], per_limit{per(c.x), per(c.y), per(c.z)};
-      Moments moments;
-      for_neighbours(n, uint32_t(i), round.radius, [&](uint32_t j, const Neighbour& at) {
-        const float agree = j == i ? 1.0f : agreement(own, shown[j], per_limit, at);
-        if (agree > 0) moments.add(at, at.weight * agree, shown[j].value, shown[j].variance);
-      });
-      planes[i] = fit(moments);
-    }
-    progress.advance(end - begin);
-  });
-  return stopped(progress);
-}
 
 /// Radii of the rounds: windows hold about 9, 21, 49, 113 and 253 texels.
 constexpr float kRadii[] = {1.6f, 2.5f, 4, 6, 9};

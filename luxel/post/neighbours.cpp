@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "luxel/base/buffer_pool.h"
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/post/texel_tile.h"
 
 namespace luxel::post {
 namespace {
@@ -73,21 +75,45 @@ Grid make_grid(const std::vector<SurfaceSample>& places, float cell_m) {
 }
 
 /// Whether something of a texel's window is missing: only there may its surface go on elsewhere.
-/// Every other texel is looked at, for charts lie two apart.
-bool is_near_a_border(const Neighbourhood& n, uint32_t i) {
-  const atlas::TexelMap& map = *n.map;
-  const atlas::Texel& t = map.texels[i];
-  const int side = map.resolution;
-  // Twice the radius: the window's corners are farther away than its sides.
-  const Around self = around(n.place[i], 2 * float(n.radius), n.min_cosine);
-  for (int y = int(t.y) - n.radius; y <= int(t.y) + n.radius; y += 2)
-    for (int x = int(t.x) - n.radius; x <= int(t.x) + n.radius; x += 2) {
-      if (x < 0 || y < 0 || x >= side || y >= side) return true;
-      const uint32_t j = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
-      if (j == atlas::kNone) return true;
-      if (neighbour(self, n.place[j]).weight <= 0) return true;
+/// Every other texel is looked at, for charts lie two apart. `self`: the texel in `cell`.
+LUXEL_VECTOR_CLONES
+bool is_near_a_border(const TexelTile& tile, const Around& self, size_t cell, int radius) {
+  const int across = 2 * radius + 1;
+  const size_t corner = cell - size_t(radius) * (tile.stride + 1);
+  for (int first = 0; first < across; first += kLanes) {
+    Float8 counts;
+    lanes_within(first, across, counts);
+    for (int k = 1; k < kLanes; k += 2) counts[k] = 0;
+    for (int row = 0; row < across; row += 2) {
+      NeighbourLanes at;
+      neighbours_in(tile, self, corner + size_t(row) * tile.stride + size_t(first), at);
+      const Int32x8 missing = (counts > Float8{}) & (at.weight <= Float8{});
+      int any = 0;
+      for (int k = 0; k < kLanes; ++k) any |= missing[k];
+      if (any) return true;
     }
+  }
   return false;
+}
+
+/// Per texel, 1: it takes part, and is_near_a_border().
+std::vector<uint8_t> find_near_borders(const Neighbourhood& n, Progress& progress) {
+  std::vector<uint8_t> out(n.place.size());
+  BufferPool<TexelTile> pool;
+  parallel_for(tile_count(n), 1, [&](size_t number, size_t) {
+    if (progress.cancelled()) return;
+    TexelTile tile = pool.take();
+    fill_tile(
+        n, number, n.radius, [](size_t) {}, [](size_t, uint32_t) {}, tile);
+    for_texels_of(n, tile, n.radius, [&](uint32_t i, size_t cell) {
+      if (n.place[i].spacing <= 0) return;
+      // Twice the radius: the window's corners are farther away than its sides.
+      const Around self = around(n.place[i], 2 * float(n.radius), n.min_cosine);
+      out[i] = is_near_a_border(tile, self, cell, n.radius);
+    });
+    pool.give(std::move(tile));
+  });
+  return out;
 }
 
 struct Candidate {
@@ -147,13 +173,13 @@ Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const Deno
   const float typical = median_spacing(n.place);
   if (typical <= 0) return n;
   const Grid grid = make_grid(n.place, float(n.radius) * typical);
+  const std::vector<uint8_t> near_border = find_near_borders(n, progress);
   parallel_for(count, kBlockTexels, [&](size_t begin, size_t end) {
     FarBlock& block = n.far[begin / kBlockTexels];
     std::vector<Candidate> found;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       found.clear();
-      if (n.place[i].spacing > 0 && is_near_a_border(n, uint32_t(i)))
-        find_far(n, grid, uint32_t(i), found);
+      if (near_border[i]) find_far(n, grid, uint32_t(i), found);
       for (const Candidate& c : found) block.texel.push_back(c.texel);
       block.end.push_back(uint32_t(block.texel.size()));
     }

@@ -78,6 +78,18 @@ inline Neighbour neighbour(const Around& a, const SurfaceSample& b) {
           dot(d, a.frame.bitangent) * a.texels_per_metre, near * facing * a.per_facing};
 }
 
+/// Calls visit(texel, Neighbour) for those that count but lie elsewhere in the atlas.
+template <class Visit>
+void for_far_neighbours(const Neighbourhood& n, uint32_t i, const Around& self,
+                        const Visit& visit) {
+  const FarBlock& block = n.far[i / kBlockTexels];
+  const size_t k = i % kBlockTexels;
+  for (uint32_t at = k > 0 ? block.end[k - 1] : 0; at < block.end[k]; ++at) {
+    const Neighbour found = neighbour(self, n.place[block.texel[at]]);
+    if (found.weight > 0) visit(block.texel[at], found);
+  }
+}
+
 /// Calls visit(texel, Neighbour) for all that count, `i` itself among them, in a fixed order.
 template <class Visit>
 void for_neighbours(const Neighbourhood& n, uint32_t i, float radius, const Visit& visit) {
@@ -96,10 +108,7 @@ void for_neighbours(const Neighbourhood& n, uint32_t i, float radius, const Visi
     for (int x = x0; x <= x1; ++x)
       if (row[x] != atlas::kNone) try_one(row[x]);
   }
-  const FarBlock& block = n.far[i / kBlockTexels];
-  const size_t k = i % kBlockTexels;
-  for (uint32_t at = k > 0 ? block.end[k - 1] : 0; at < block.end[k]; ++at)
-    try_one(block.texel[at]);
+  for_far_neighbours(n, i, self, visit);
 }
 
 }  // namespace luxel::post

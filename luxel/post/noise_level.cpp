@@ -4,6 +4,7 @@
 #include <array>
 
 #include "luxel/base/parallel.h"
+#include "luxel/base/vectorize.h"
 
 namespace luxel::post {
 namespace {
@@ -48,10 +49,17 @@ Difference mixed_difference(const Neighbourhood& n, uint32_t i, std::span<const 
   return {r * r / stated, l * l / stated};
 }
 
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// The values are so few that counting how many are less than each, eight at a time, is faster than
+/// sorting.
+LUXEL_VECTOR_CLONES
+float median(std::span<const float> values) {
+  const int middle = int(values.size() / 2);
+  for (const float v : values) {
+    int less = 0, up_to = 0;
+    for (const float other : values) less += other < v, up_to += other <= v;
+    if (less <= middle && middle < up_to) return v;
+  }
+  return 0;
 }
 
 /// What a window shows.

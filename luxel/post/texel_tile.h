@@ -106,8 +106,9 @@ struct NeighbourLanes {
   const Float8 beyond = off > zero ? off : zero;
   const Int32x8 counts = (near > zero) & (facing > zero) & (spacing > zero) &
                          (beyond * beyond <= d2 * 0.04f) & (region == int32_t(a.own.region));
-  out.u = (x * t.x + y * t.y + z * t.z) * a.texels_per_metre;
-  out.v = (x * b.x + y * b.y + z * b.z) * a.texels_per_metre;
+  // Infinities elsewhere are kept out of sums.
+  out.u = counts ? (x * t.x + y * t.y + z * t.z) * a.texels_per_metre : zero;
+  out.v = counts ? (x * b.x + y * b.y + z * b.z) * a.texels_per_metre : zero;
   out.weight = counts ? near * facing * a.per_facing : zero;
 }
 

@@ -9,12 +9,15 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfThreading.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 #include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
 #include "luxel/image/codec.h"
 
 namespace luxel::image {
@@ -60,8 +63,14 @@ class MemoryInput : public Imf::IStream {
   size_t position_ = 0;
 };
 
-Imf::Header make_header(const Image& image) {
+/// Rows [begin, end) of an image.
+struct Rows {
+  int begin = 0, end = 0;
+};
+
+Imf::Header make_header(const Image& image, Rows rows) {
   Imf::Header header(image.width, image.height);
+  header.dataWindow().min.y = rows.begin, header.dataWindow().max.y = rows.end - 1;
   header.compression() = Imf::ZIP_COMPRESSION;
   for (int c = 0; c < image.channels; ++c)
     header.channels().insert(kChannelNames[size_t(c)], Imf::Channel(Imf::FLOAT));
@@ -150,6 +159,59 @@ Result<Image> read_exr(std::span<const std::byte> bytes, std::string_view name) 
 /// Where there is no memory for it, the file waits for ever for these lines.
 void make_threads() { Imf::globalThreadCount(); }
 
+/// Rows that ZIP compresses together, and rows that a thread compresses, whole blocks.
+constexpr int kBlockRows = 16, kPartRows = 4 * kBlockRows;
+int blocks_of(Rows rows) { return (rows.end - rows.begin + kBlockRows - 1) / kBlockRows; }
+
+enum class Blocks : uint8_t { none, all };
+
+/// A file of some rows: a header, the places of its blocks in it, and the blocks.
+std::vector<std::byte> file_of(const Image& image, Rows rows, Blocks blocks) {
+  MemoryOutput stream;
+  {
+    Imf::OutputFile file(stream, make_header(image, rows), 0);
+    file.setFrameBuffer(make_frame_buffer(image, 0, 0));
+    if (blocks == Blocks::all) file.writePixels(rows.end - rows.begin);
+  }  // the places are written when the file closes
+  return std::move(stream.bytes);
+}
+
+/// A block's place: 8 bytes, the lowest first.
+constexpr size_t kOffsetBytes = 8;
+
+/// A file of some of a picture's rows, or why there is none.
+struct Part {
+  std::vector<std::byte> file;
+  int blocks = 0;
+  std::string failed;
+};
+
+Part make_part(const Image& image, int number) {
+  const Rows rows{number * kPartRows, std::min(image.height, (number + 1) * kPartRows)};
+  Part out;
+  out.blocks = blocks_of(rows);
+  try {
+    out.file = file_of(image, rows, Blocks::all);
+  } catch (const std::exception& e) {
+    out.failed = e.what();
+  }
+  return out;
+}
+
+/// Appends a part's blocks to the file, and writes their places into its table from `table` on,
+/// which moves on. Both files' headers have so many bytes.
+void append_blocks(const Part& part, size_t header, size_t& table, std::vector<std::byte>& file) {
+  const size_t begin = header + size_t(part.blocks) * kOffsetBytes;
+  for (int k = 0; k < part.blocks; ++k, table += kOffsetBytes) {
+    uint64_t place = 0;
+    for (size_t i = 0; i < kOffsetBytes; ++i)
+      place |= uint64_t(part.file[header + size_t(k) * kOffsetBytes + i]) << (8 * i);
+    place += file.size() - begin;
+    for (size_t i = 0; i < kOffsetBytes; ++i) file[table + i] = std::byte(place >> (8 * i));
+  }
+  file.insert(file.end(), part.file.begin() + long(begin), part.file.end());
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encode_exr(const Image& image) {
@@ -158,13 +220,19 @@ Result<std::vector<std::byte>> encode_exr(const Image& image) {
   for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
   try {
     make_threads();
-    MemoryOutput stream;
-    {
-      Imf::OutputFile file(stream, make_header(image), 0);
-      file.setFrameBuffer(make_frame_buffer(image, 0, 0));
-      file.writePixels(image.height);
-    }  // the line offsets are written when the file closes
-    return std::move(stream.bytes);
+    std::vector<std::byte> file = file_of(image, {0, image.height}, Blocks::none);
+    // Parts of the picture, each as a file of its own.
+    const size_t header = file.size() - size_t(blocks_of({0, image.height})) * kOffsetBytes;
+    const size_t parts = size_t((image.height + kPartRows - 1) / kPartRows);
+    std::vector<Part> made(parts);
+    parallel_for(parts, 1, [&](size_t k, size_t) { made[k] = make_part(image, int(k)); });
+    // Their blocks, one part's after the other's.
+    size_t table = header;
+    for (const Part& part : made) {
+      if (!part.failed.empty()) throw std::runtime_error(part.failed);
+      append_blocks(part, header, table, file);
+    }
+    return file;
   } catch (const std::exception& e) {
     return fail(ErrorCode::io, "an EXR picture of {} x {} pixels cannot be encoded: {}",
                 image.width, image.height, e.what());

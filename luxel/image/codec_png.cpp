@@ -1,9 +1,8 @@
 // PNG through stb, which checks no CRCs and would hand out garbage pixels for a damaged file: they
-// are checked here first. stb's global knobs (flip, filter, compression level) are left at their
-// defaults on purpose: they belong to the process, and other threads may be at work.
+// are checked here first. stb's global knobs are left at their defaults on purpose: they belong to
+// the process, and other threads may be at work.
 #include <fmt/format.h>
 #include <stb/stb_image.h>
-#include <stb/stb_image_write.h>
 #include <zlib.h>
 
 #include <array>
@@ -12,7 +11,6 @@
 #include <string>
 #include <type_traits>
 
-#include "luxel/base/check.h"
 #include "luxel/image/codec_ldr.h"
 
 namespace luxel::image {
@@ -77,12 +75,6 @@ auto load_rgba(const Load& load, Bytes data, int& width, int& height) {
                                                                                    stbi_image_free);
 }
 
-void append(void* context, void* data, int size) {
-  auto& out = *static_cast<std::vector<std::byte>*>(context);
-  const std::byte* bytes = static_cast<const std::byte*>(data);
-  out.insert(out.end(), bytes, bytes + size);
-}
-
 }  // namespace
 
 bool is_png(std::span<const std::byte> bytes) {
@@ -110,18 +102,6 @@ Result<Image> decode_png_values(std::span<const std::byte> bytes, std::string_vi
   // stb gives 257 v for a byte v: v / 255 after the division.
   for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(pixels.get()[i]) / 65535.0f;
   return image;
-}
-
-std::vector<std::byte> encode_png(const Image8& image) {
-  LUXEL_CHECK(image.width > 0 && image.height > 0);
-  LUXEL_CHECK(image.channels >= 1 && image.channels <= 4);
-  LUXEL_CHECK(image.data.size() ==
-              size_t(image.width) * size_t(image.height) * size_t(image.channels));
-  std::vector<std::byte> out;
-  const int ok = stbi_write_png_to_func(append, &out, image.width, image.height, image.channels,
-                                        image.data.data(), image.width * image.channels);
-  LUXEL_CHECK(ok != 0);  // fails only for sizes beyond the checks above, or without memory
-  return out;
 }
 
 }  // namespace luxel::image

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <stb/stb_image.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
+#include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/image/color.h"
 
@@ -41,6 +44,19 @@ TEST(Exr, RoundTripKeepsEveryBit) {
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_TRUE(same_bits(image, *back)) << channels;
   }
+}
+
+// Parts of 64 rows are compressed by all threads. The last has 13, less than a block of 16.
+TEST(Exr, ManyPartsAreOneFile) {
+  RandomStream random(6);
+  Image image(30, 5 * 64 + 13, 3);
+  for (float& v : image.data) v = random.next();
+  const auto bytes = encode_exr(image);
+  ASSERT_TRUE(bytes) << bytes.error().message;
+  const auto back = decode_exr(*bytes, "parts");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->height, image.height);
+  EXPECT_EQ(back->data, image.data);
 }
 
 TEST(Exr, RowZeroIsOnTop) {
@@ -126,6 +142,41 @@ TEST(Png, RoundTripThroughAnotherDecoder) {
     EXPECT_EQ(stored, channels);
     EXPECT_EQ(std::memcmp(back, image.data.data(), image.data.size()), 0);
     stbi_image_free(back);
+  }
+}
+
+/// Bands of gradients and of noise: rows for each of PNG's filters.
+Image8 banded(int width, int height, int channels) {
+  RandomStream random(5);
+  Image8 out{width, height, channels, {}};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < channels; ++c)
+        out.data.push_back(y / 50 % 2 == 0 ? uint8_t(x + 2 * y + 40 * c)
+                                           : uint8_t(random.next() * 9));
+  return out;
+}
+
+// Strips of rows are compressed by all threads: another decoder puts them together.
+TEST(Png, ManyStripsAreOneFileForAnyNumberOfThreads) {
+  for (int channels = 1; channels <= 4; ++channels) {
+    const Image8 image = banded(400, 700, channels);
+    std::vector<std::byte> alone;
+    {
+      const ThreadLimit limit(1);
+      alone = encode_png(image);
+    }
+    const ThreadLimit limit(7);
+    const std::vector<std::byte> bytes = encode_png(image);
+    EXPECT_EQ(bytes, alone);
+    EXPECT_LT(2 * bytes.size(), image.data.size());
+    int width = 0, height = 0, found = 0;
+    uint8_t* pixels = stbi_load_from_memory(reinterpret_cast<const uint8_t*>(bytes.data()),
+                                            int(bytes.size()), &width, &height, &found, 0);
+    ASSERT_NE(pixels, nullptr);
+    EXPECT_EQ((std::array{width, height, found}), (std::array{400, 700, channels}));
+    EXPECT_TRUE(std::equal(image.data.begin(), image.data.end(), pixels));
+    stbi_image_free(pixels);
   }
 }
 

@@ -1,45 +1,39 @@
 #include "luxel/display/quadratic_view.h"
 
-#include <optional>
-
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
-#include "luxel/trace/camera_rays.h"
+#include "luxel/display/triangle_raster.h"
 
 namespace luxel::display {
 namespace {
 
-constexpr int kViewTile = 16;  ///< pixels along a tile's side: its rays fit in a core's cache
-
-/// The triangles as a scene of one mesh, so that a hit's triangle is ours.
-scene::Scene scene_of(const QuadraticMesh& mesh) {
-  scene::Scene scene;
-  scene.materials.resize(2);
-  scene.materials[1].double_sided = true;
-  scene::Mesh out;
-  out.positions = mesh.vertices, out.triangles = mesh.triangles;
-  for (const uint8_t two_sided : mesh.two_sided) out.triangle_material.push_back(two_sided ? 1 : 0);
-  scene.meshes.push_back(std::move(out));
-  scene.instances.push_back({"triangles", 0, {}});
-  scene.background = mesh.background, scene.environment = mesh.environment;
-  return scene;
-}
+/// Rows that are filled together: their nearness fits in a core's cache.
+constexpr int kBandRows = 16;
 
 Rgb value_of(const std::array<Rgb, 6>& r, Barycentric at) {
   return (r[0] * at.u + r[1] * at.v + r[2]) * at.u + (r[3] * at.v + r[4]) * at.v + r[5];
+}
+
+/// Per band of rows, the places of the triangles in it.
+std::vector<std::vector<uint32_t>> by_bands(std::span<const PictureTriangle> triangles,
+                                            size_t bands) {
+  std::vector<std::vector<uint32_t>> out(bands);
+  for (uint32_t k = 0; k < triangles.size(); ++k)
+    for (int band = triangles[k].first_row / kBandRows;
+         band <= (triangles[k].end_row - 1) / kBandRows; ++band)
+      out[size_t(band)].push_back(k);
+  return out;
 }
 
 }  // namespace
 
 struct QuadraticView::Impl {
   QuadraticMesh mesh;
-  scene::Scene scene;  ///< the tracer refers to it
-  std::optional<trace::RayTracer> tracer;
+  scene::Scene surroundings;  ///< nothing else
 
-  Rgb radiance_of(const trace::Hit& hit, Vec3 direction) const {
-    if (!hit.found()) return scene::smooth_surroundings_towards(scene, direction);
-    const Rgb e = max(Rgb{}, value_of(mesh.irradiance[hit.triangle], hit.at));
-    return mesh.emission[hit.triangle] + mesh.reflectance[hit.triangle] * e * (1 / kPi);
+  Rgb radiance_of(uint32_t triangle, Barycentric at) const {
+    const Rgb e = max(Rgb{}, value_of(mesh.irradiance[triangle], at));
+    return mesh.emission[triangle] + mesh.reflectance[triangle] * e * (1 / kPi);
   }
 };
 
@@ -55,36 +49,43 @@ Result<QuadraticView> QuadraticView::make(QuadraticMesh mesh) {
   if (count == 0) return fail(ErrorCode::bad_input, "there is no surface to draw");
   auto impl = std::make_unique<Impl>();
   impl->mesh = std::move(mesh);
-  impl->scene = scene_of(impl->mesh);
-  LUXEL_TRY(impl->tracer, trace::RayTracer::build(impl->scene));
+  impl->surroundings.background = impl->mesh.background;
+  impl->surroundings.environment = impl->mesh.environment;
   return QuadraticView(std::move(impl));
 }
 
 image::Image QuadraticView::draw(const scene::Camera& camera, int width, int height) const {
   LUXEL_CHECK(width > 0 && height > 0);
+  const QuadraticMesh& mesh = impl_->mesh;
   const trace::CameraRays rays_of(camera, width, height);
+  const std::vector<PictureTriangle> triangles =
+      picture_triangles({mesh.vertices, mesh.triangles, mesh.two_sided}, rays_of);
+  const auto bands = size_t((height + kBandRows - 1) / kBandRows);
+  const std::vector<std::vector<uint32_t>> of_band = by_bands(triangles, bands);
   image::Image picture(width, height, 4);
-  // By tiles, so that neighbouring rays are traced together.
-  const int across = (width + kViewTile - 1) / kViewTile,
-            down = (height + kViewTile - 1) / kViewTile;
-  parallel_for(size_t(across) * size_t(down), 4, [&](size_t begin, size_t end) {
-    std::vector<trace::Ray> rays;
-    for (size_t tile = begin; tile < end; ++tile) {
-      const int x0 = int(tile) % across * kViewTile, y0 = int(tile) / across * kViewTile;
-      const int x1 = std::min(x0 + kViewTile, width), y1 = std::min(y0 + kViewTile, height);
-      // A ray through the middle of each pixel.
-      rays.clear();
-      for (int y = y0; y < y1; ++y)
-        for (int x = x0; x < x1; ++x)
-          rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
-      const std::vector<trace::Hit> hits = trace::visible_hits(impl_->scene, *impl_->tracer, rays);
-      // What they meet is the colour.
+  parallel_for(bands, 1, [&](size_t begin, size_t end) {
+    RasterRows rows;
+    rows.width = width;
+    for (size_t band = begin; band < end; ++band) {
+      // What each pixel sees.
+      rows.first = int(band) * kBandRows, rows.end = std::min(rows.first + kBandRows, height);
+      fill(triangles, of_band[band], rays_of.orthographic, rows);
+      // That is its colour.
       size_t k = 0;
-      for (int y = y0; y < y1; ++y)
-        for (int x = x0; x < x1; ++x, ++k) {
-          const Rgb c = impl_->radiance_of(hits[k], rays[k].direction);
+      for (int y = rows.first; y < rows.end; ++y)
+        for (int x = 0; x < width; ++x, ++k) {
+          const bool is_surface = rows.seen[k] != scene::kNone;
+          const float at_x = float(x) + 0.5f, at_y = float(y) + 0.5f;
+          Rgb c;
+          if (is_surface) {
+            const PictureTriangle& t = triangles[rows.seen[k]];
+            c = impl_->radiance_of(t.triangle, place_at(t, double(at_x), double(at_y)));
+          } else {
+            c = scene::smooth_surroundings_towards(impl_->surroundings,
+                                                   rays_of.through(at_x, at_y).direction);
+          }
           float* pixel = picture.at(x, y);
-          pixel[0] = c.x, pixel[1] = c.y, pixel[2] = c.z, pixel[3] = hits[k].found() ? 1.0f : 0.0f;
+          pixel[0] = c.x, pixel[1] = c.y, pixel[2] = c.z, pixel[3] = is_surface ? 1.0f : 0.0f;
         }
     }
   });

@@ -18,7 +18,8 @@ Result<image::Image> draw_flat(const Subject&, const RenderSettings&, Rendered&,
 Result<image::Image> draw_gouraud(const Subject&, const RenderSettings&, Rendered&, Progress&);
 /// What draw_gouraud() shows, with elements cut along discontinuities.
 Result<image::Image> draw_gouraud_disc(const Subject&, const RenderSettings&, Rendered&, Progress&);
-/// The interpolants, one ray per pixel, which meets their triangles: what a viewer draws.
+/// The interpolants at the middle of each pixel, whose triangles are filled row by row: what a
+/// viewer draws.
 Result<image::Image> draw_interpolant(const Subject&, const RenderSettings&, Rendered&, Progress&);
 /// The interpolants, four rays per pixel, which meet the scene.
 Result<image::Image> draw_lerpshade(const Subject&, const RenderSettings&, Rendered&, Progress&);

@@ -139,9 +139,11 @@ void pull_clusters(const Faces& faces, const Tree& tree, Light& light) {
   for (size_t c = tree.clusters.size(); c-- > 0;) {
     ClusterLight& l = light.clusters[c];
     l.sent = {};
+    l.most = 0;
     for (const uint32_t child : tree.clusters[c].child) {
       if (tree.is_cluster(child)) {
         l.sent.add(light.clusters[child].sent);
+        l.most = std::max(l.most, light.clusters[child].most);
         continue;
       }
       const Element& e = tree.element(child);
@@ -149,6 +151,7 @@ void pull_clusters(const Faces& faces, const Tree& tree, Light& light) {
       const Face& face = faces.faces[e.face];
       const Vec3 normal = to_float(face.plane.normal);
       const Rgb power = part.radiosity * float(e.area_m2);
+      l.most = std::max(l.most, part.most);
       l.sent.add(normal, power);
       if (face.two_sided) l.sent.add(-normal, power);
     }

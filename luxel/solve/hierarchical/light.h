@@ -41,6 +41,7 @@ struct Cosines {
 struct ClusterLight {
   Cosines received;  ///< E over the links of this cluster
   Cosines sent;      ///< B A of the surfaces below [W]
+  float most = 0;    ///< the largest component of B over the leaves below
 };
 
 /// Per element.

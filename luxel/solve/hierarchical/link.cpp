@@ -34,6 +34,11 @@ constexpr double kCornerOverMiddle = 2, kOddPart = 0.1;
 /// many times the sum of their radii. The first-order error (see link_far) is half of the light
 /// then, and beyond it terms of higher order would count as much.
 constexpr double kFar = 2;
+/// A guess may err by all that it brings, to one side for all that a surface gets from nearby: it
+/// counts as so many times that.
+constexpr float kGuessCounts = 4;
+/// A closed body shows a quarter of its surface in the mean over all directions.
+constexpr float kShown = 0.25f;
 
 /// Where an element is looked from: Gauss's points.
 struct Points {
@@ -214,6 +219,10 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
   return link;
 }
 
+double area_of(const Tree& tree, uint32_t id) {
+  return tree.is_cluster(id) ? tree.clusters[id].area_m2 : tree.element(id).area_m2;
+}
+
 struct Ball {
   DVec3 centre;
   double radius_m = 0;
@@ -241,21 +250,29 @@ std::optional<Vec3> place_facing(const Exchange& x, uint32_t id, DVec3 other,
   return std::nullopt;
 }
 
-/// The share of pairs of points, which face each other, that see each other.
-float seen_between(const Exchange& x, uint32_t receiver, uint32_t source) {
+/// Pairs of points that face the other's middle, from the receiver to the source.
+struct Pairs {
+  std::array<trace::Ray, kLinkRays> rays;
+  std::array<uint8_t, kLinkRays> blocked{};
+  size_t count = 0;
+
+  /// The share that see each other.
+  float seen() const {
+    if (count == 0) return 0;
+    return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / float(count);
+  }
+};
+Pairs pairs_between(const Exchange& x, uint32_t receiver, uint32_t source) {
   const DVec3 r = ball_of(x.tree, receiver).centre, s = ball_of(x.tree, source).centre;
   RandomStream random{hash64(receiver, source)};
-  std::array<trace::Ray, kLinkRays> rays;
-  size_t count = 0;
+  Pairs out;
   for (uint32_t k = 0; k < kLinkRays; ++k) {
     const auto from = place_facing(x, receiver, s, random);
     const auto to = place_facing(x, source, r, random);
-    if (from && to) rays[count++] = {*from, 0, *to - *from, 1};
+    if (from && to) out.rays[out.count++] = {*from, 0, *to - *from, 1};
   }
-  if (count == 0) return 0;
-  std::array<uint8_t, kLinkRays> blocked{};
-  x.tracer.occluded({rays.data(), count}, {blocked.data(), count});
-  return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / float(count);
+  x.tracer.occluded({out.rays.data(), out.count}, {out.blocked.data(), out.count});
+  return out;
 }
 
 /// From far away: a point that sends to a point.
@@ -280,7 +297,7 @@ Link link_far(const Exchange& x, uint32_t receiver, uint32_t source) {
     link.factor = link.spread = INFINITY;
     return link;
   }
-  link.visible = seen_between(x, receiver, source);
+  link.visible = pairs_between(x, receiver, source).seen();
   link.factor = float(cosine / (kPiDouble * distance * distance)) * link.visible;
   // Wrong by what distances and angles differ by over both, (r + s) / d of the exchange to first
   // order; and by shadows that fall on a part. If a share v is seen, some points may see all of it
@@ -310,6 +327,30 @@ Link make_link(const Exchange& x, uint32_t receiver, uint32_t source, const Link
   return link_elements(x, receiver, source, parent, scratch);
 }
 
+Link guess_link(const Exchange& x, uint32_t receiver, uint32_t source) {
+  const DVec3 r = ball_of(x.tree, receiver).centre, s = ball_of(x.tree, source).centre;
+  const Pairs pairs = pairs_between(x, receiver, source);
+  Link link{.source = source, .spread = INFINITY, .visible = pairs.seen()};
+  Vec3 towards{};
+  float sum = 0;
+  for (size_t k = 0; k < pairs.count; ++k) {
+    if (pairs.blocked[k]) continue;
+    const Vec3 d = pairs.rays[k].direction;
+    float cosine = 1;
+    if (!x.tree.is_cluster(receiver))
+      cosine = std::max(
+          0.0f,
+          dot(to_float(x.faces.faces[x.tree.element(receiver).face].plane.normal), d) / length(d));
+    // As from a disc as large as the source looks, which brings no more than its radiosity.
+    const float share = cosine / (kPi * dot(d, d) + kShown * float(area_of(x.tree, source)));
+    sum += share, towards += d * (share / length(d));
+  }
+  link.factor = pairs.count > 0 ? sum / float(pairs.count) : 0;
+  if (!(dot(towards, towards) > 0)) towards = to_float(s - r);
+  link.direction = dot(towards, towards) > 0 ? normalize(towards) : Vec3{0, 0, 1};
+  return link;
+}
+
 /// The mean radiosity of a source element as its receiver sees it.
 static Rgb sent_over(const Link& link, const Exchange& x, const Light& light) {
   const std::array<Rgb, 4>& b = light.elements[link.source - x.tree.clusters.size()].shining;
@@ -324,7 +365,8 @@ Rgb irradiance_of(const Link& link, const Exchange& x, const Light& light) {
 /// [Hanrahan91] compares B F A, the power over a link, with a limit. Here the limit is eps on an
 /// element of the unit's area, so that eps is what it is in [Hardt96]: W/m^2.
 float error_of(const Link& link, uint32_t receiver, const Exchange& x, const Light& light) {
-  if (std::isinf(link.spread)) return INFINITY;
+  if (std::isinf(link.spread))
+    return std::isinf(link.factor) ? INFINITY : most_error_of(link.source, receiver, x, light);
   float error = 0;
   if (x.tree.is_cluster(link.source)) {
     error = max_component(sent_along(x, light, link.source, -link.direction)) * link.spread;
@@ -334,9 +376,23 @@ float error_of(const Link& link, uint32_t receiver, const Exchange& x, const Lig
                 ? std::max(l.most * link.spread, l.rough * link.factor)
                 : l.most * float(x.tree.element(link.source).area_m2) * link.spread;
   }
-  const double area = x.tree.is_cluster(receiver) ? x.tree.clusters[receiver].area_m2
-                                                  : x.tree.element(receiver).area_m2;
-  return error * float(area / x.unit_area_m2);
+  return error * float(area_of(x.tree, receiver) / x.unit_area_m2);
+}
+
+float most_error_of(uint32_t source, uint32_t receiver, const Exchange& x, const Light& light) {
+  float most = 0, power = 0;
+  if (x.tree.is_cluster(source)) {
+    const ClusterLight& l = light.clusters[source];
+    most = l.most, power = max_component(l.sent.zeroth);
+  } else {
+    const Element& e = x.tree.element(source);
+    const ElementLight& l = light.elements[source - x.tree.clusters.size()];
+    most = l.most;
+    power = max_component(l.radiosity) * float(e.area_m2) *
+            (x.faces.faces[e.face].two_sided ? 2.0f : 1.0f);
+  }
+  return kGuessCounts * std::min(most * float(area_of(x.tree, receiver)), power) /
+         float(x.unit_area_m2);
 }
 
 void gather(const Exchange& x, std::span<const std::vector<Link>> links, Light& light) {

@@ -16,7 +16,8 @@ struct Link {
   /// Between elements: E at the receiver's corner a is to[a] sum_b from[b] B_b, B_b at those of the
   /// source; linear between corners. The sum of `from` is 1, the mean of `to` is the factor.
   std::array<float, 4> to = {}, from = {};
-  float spread = 0;     ///< how far it is from linear over the receiver; of clusters: all of it
+  float spread = 0;     ///< how far it is from linear over the receiver; of clusters: all of it;
+                        ///< INFINITY: too near for that, and `factor` a guess, or INFINITY too
   float visible = 1;    ///< share of the unoccluded exchange
   Vec3 direction = {};  ///< unit, from the receiver to the source, where one is a cluster
   /// Faces that may stand between two elements.
@@ -52,6 +53,15 @@ struct Exchange {
 /// each other.
 Link make_link(const Exchange& exchange, uint32_t receiver, uint32_t source, const Link* parent,
                viewfactor::VisibilityScratch& scratch);
+
+/// What error_of says of a guess: four times the most that may come over a link, whatever stands
+/// between. That is all that leaves the source, or what its brightest part would bring to all of
+/// the receiver.
+float most_error_of(uint32_t source, uint32_t receiver, const Exchange& exchange,
+                    const Light& light);
+/// A link to or from a cluster that is too near for exchange between points: a guess by eight pairs
+/// of points, for so little light that most_error_of is small.
+Link guess_link(const Exchange& exchange, uint32_t receiver, uint32_t source);
 
 /// What the source sends to a receiver over a link: E [W/m^2].
 Rgb irradiance_of(const Link& link, const Exchange& exchange, const Light& light);

@@ -125,8 +125,10 @@ void add_pairs(Refined& state, const Exchange& x, const Open& open, Division div
                                                  : Pair{r, parts.id[i], parent});
 }
 
-std::vector<Link> make_links(const Exchange& x, std::span<const Pair> pairs,
-                             std::span<const Open> open, Progress& progress) {
+/// Links of pairs, from the open links that they are parts of.
+std::vector<Link> make_links(const Refined& state, const Exchange& x, const RefineParams& params,
+                             std::span<const Pair> pairs, std::span<const Open> open,
+                             Progress& progress) {
   std::vector<Link> made(pairs.size());
   parallel_for(pairs.size(), 64, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
@@ -141,6 +143,9 @@ std::vector<Link> make_links(const Exchange& x, std::span<const Pair> pairs,
       const bool inherits =
           !x.tree.is_cluster(from.receiver) && !x.tree.is_cluster(from.link.source);
       made[k] = make_link(x, receiver, source, inherits ? &from.link : nullptr, scratch);
+      if (params.guesses && std::isinf(made[k].spread) &&
+          double(most_error_of(source, receiver, x, state.light)) <= params.eps)
+        made[k] = guess_link(x, receiver, source);
     }
     progress.advance(end - begin);
   });
@@ -159,7 +164,7 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
     for (Open& o : open) {
       rules.full = state.tree.elements.size() + 4 > params.max_elements;
       const Division division =
-          state.links.count + pairs.size() >= params.max_links && !std::isinf(o.link.spread)
+          state.links.count + pairs.size() >= params.max_links && !std::isinf(o.link.factor)
               ? Division::none
               : division_of(rules, state.light, o.receiver, o.link);
       state.links.bounded |= rules.full || state.links.count + pairs.size() >= params.max_links;
@@ -172,7 +177,7 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
       divided.push_back(std::move(o));
     }
     // Links between the parts: kept where they err by less than eps, else open.
-    std::vector<Link> made = make_links(x, pairs, divided, progress);
+    std::vector<Link> made = make_links(state, x, params, pairs, divided, progress);
     open.clear();
     for (size_t k = 0; k < pairs.size(); ++k) {
       if (made[k].factor == 0 && made[k].spread == 0) continue;

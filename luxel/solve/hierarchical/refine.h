@@ -13,6 +13,9 @@ struct RefineParams {
   /// Elements are not divided below this [m^2].
   double min_area_m2 = 0;
   size_t max_elements = 1u << 20, max_links = 1u << 25;
+  /// Whether what is too near to a cluster for exchange between points gets guess_link(), where
+  /// most_error_of is no more than eps. Else it is divided down to elements.
+  bool guesses = false;
 };
 
 /// The links of a scene, kept with their receivers.

@@ -25,7 +25,9 @@ constexpr double kLeastEps = 1e-4;
 /// before bounces are known, stays divided. Larger ones cost more iterations.
 constexpr double kFirstEps = 0.1;
 /// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
-/// is asked for must not depend on how finely a surface is cut into triangles.
+/// is asked for must not depend on how finely a surface is cut into triangles. Where there are more
+/// faces, those of mean size are below the unit, and many pairs of them exchange less than eps
+/// however near they are: these are guessed.
 constexpr size_t kMostUnits = 1024;
 /// Elements are not divided below this part of the scene's area: a room of 100 m^2, below 4 cm^2.
 constexpr double kSolveLeastPart = 1.0 / (1 << 18);
@@ -99,7 +101,8 @@ RefineParams refine_params(const Solving& w, const SolveParams& params, double e
   return {.eps = eps,
           .min_area_m2 = w.s.min_area_m2,
           .max_elements = params.max_elements,
-          .max_links = params.max_links};
+          .max_links = params.max_links,
+          .guesses = w.s.faces.size() > kMostUnits};
 }
 
 /// Links everything by a first guess of the light.

@@ -123,13 +123,15 @@ TEST(QuadraticView, FromInsideNoPixelFallsBetweenTriangles) {
 
 TEST(QuadraticView, TheNearerTriangleHidesTheOther) {
   QuadraticMesh mesh = one_triangle();
-  // The same triangle a metre nearer to the camera, and black; then one behind a parallel camera.
-  for (const float z : {1.0f, 8.0f}) {
+  // A metre nearer to the camera one that is black and shines a little; then one farther away, and
+  // one behind the camera.
+  for (const float z : {1.0f, -1.0f, 8.0f}) {
     const auto first = uint32_t(mesh.vertices.size());
     for (size_t k = 0; k < 3; ++k) mesh.vertices.push_back(mesh.vertices[k] + Vec3{0, 0, z});
     mesh.triangles.push_back({first, first + 1, first + 2});
     mesh.irradiance.push_back(mesh.irradiance[0]);
-    mesh.reflectance.push_back({}), mesh.emission.push_back({0, 0, z}), mesh.two_sided.push_back(0);
+    mesh.reflectance.push_back({}), mesh.emission.push_back({0, 0, z == 1 ? 1.0f : 5.0f}),
+        mesh.two_sided.push_back(0);
   }
   scene::Camera perspective = above(5);
   perspective.orthographic_height_m = 0, perspective.fov_y_rad = 0.5f;

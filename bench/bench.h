@@ -75,18 +75,32 @@ Result<Table> measure_quality(const std::filesystem::path& shared, int threads);
 
 /// Stated and true errors of bakes that are asked for a root mean square error. An hour.
 Result<Table> measure_rms(const std::filesystem::path& shared, int threads);
+/// Its rows of one scene, by the file's stem. Errors: no scene has this name.
+Result<Table> measure_rms_in(const std::filesystem::path& shared, const std::string& scene,
+                             int threads);
+
+/// The rows of one scene alone, by its file's stem.
+using SceneBenchFunction = Result<Table> (*)(const std::filesystem::path& shared,
+                                             const std::string& scene, int threads);
 
 struct Bench {
   std::string_view name;
   BenchFunction run;
+  SceneBenchFunction run_in = nullptr;  ///< null: of all scenes together only
 };
-inline constexpr std::array kBenches{
-    Bench{"rays", measure_rays},       Bench{"maps", measure_maps},
-    Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
-    Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
-    Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
-    Bench{"budget", measure_budget},   Bench{"layers", measure_layers},
-    Bench{"rebake", measure_rebake},   Bench{"quality", measure_quality},
-    Bench{"rms", measure_rms},         Bench{"bundles", measure_bundles}};
+inline constexpr std::array kBenches{Bench{"rays", measure_rays},
+                                     Bench{"maps", measure_maps},
+                                     Bench{"atlas", measure_atlas},
+                                     Bench{"memory", measure_memory},
+                                     Bench{"threads", measure_threads},
+                                     Bench{"denoise", measure_denoise},
+                                     Bench{"scenes", measure_scenes},
+                                     Bench{"supersample", measure_supersample},
+                                     Bench{"budget", measure_budget, measure_budget_in},
+                                     Bench{"layers", measure_layers},
+                                     Bench{"rebake", measure_rebake},
+                                     Bench{"quality", measure_quality},
+                                     Bench{"rms", measure_rms, measure_rms_in},
+                                     Bench{"bundles", measure_bundles}};
 
 }  // namespace luxel::bench

@@ -105,11 +105,22 @@ Status measure_rms_of(const std::string& name, scene::Scene scene, int resolutio
 }  // namespace
 
 Result<Table> measure_rms(const std::filesystem::path& shared, int threads) {
+  return measure_rms_in(shared, "", threads);
+}
+
+Result<Table> measure_rms_in(const std::filesystem::path& shared, const std::string& scene,
+                             int threads) {
   const ThreadLimit limit(threads);
   Table table = new_table(
       "rms", {"scene", "asked [%]", "stated [%]", "true [%]", "true / stated", "rays [millions]"});
-  for (const SharedScene& scene : kRmsScenes) {
-    const std::filesystem::path file = shared / "scenes" / scene.file;
+  bool is_known = scene.empty();
+  const auto is_asked_for = [&](const std::filesystem::path& file) {
+    is_known = is_known || file.stem() == scene;
+    return scene.empty() || file.stem() == scene;
+  };
+  for (const SharedScene& in : kRmsScenes) {
+    const std::filesystem::path file = shared / "scenes" / in.file;
+    if (!is_asked_for(file)) continue;
     if (!std::filesystem::exists(file)) {
       table.notes.push_back(file.string() + " is not on this machine: left out");
       continue;
@@ -117,12 +128,17 @@ Result<Table> measure_rms(const std::filesystem::path& shared, int threads) {
     LUXEL_TRY(import::Imported imported, import::import_scene(file));
     LUXEL_TRY_STATUS(
         measure_rms_of(file.parent_path().filename().string() + "/" + file.stem().string(),
-                       std::move(imported.scene), scene.resolution, table));
+                       std::move(imported.scene), in.resolution, table));
   }
-  for (scene::NamedScene& own : scene::procedural_scenes())
-    if (std::ranges::find(kOwnRmsScenes, own.file) != kOwnRmsScenes.end())
-      LUXEL_TRY_STATUS(measure_rms_of(std::filesystem::path(own.file).stem().string(),
-                                      std::move(own.scene), 128, table));
+  for (scene::NamedScene& own : scene::procedural_scenes()) {
+    const std::filesystem::path file(own.file);
+    if (std::ranges::find(kOwnRmsScenes, own.file) == kOwnRmsScenes.end() || !is_asked_for(file))
+      continue;
+    LUXEL_TRY_STATUS(measure_rms_of(file.stem().string(), std::move(own.scene), 128, table));
+  }
+  if (!is_known)
+    return fail(ErrorCode::bad_setting,
+                "--scene {}: no scene of luxel bench rms has this name; kaykit_city is one", scene);
   return table;
 }
 

@@ -1,4 +1,5 @@
 // `luxel bench NAME`: the tables and the page in docs/. What they measure: bench/.
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -20,13 +21,13 @@ namespace luxel::cli {
 namespace {
 
 constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight",
-                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated",
-                     *kBudget = "budget";
+                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated";
 
 struct BenchOptions {
   Common common;
   std::string name;
-  std::string scene;  ///< gallery, budget: the stem of the only one; relight: its folder's name
+  /// gallery, budget, rms: the stem of the only one; relight: its folder's name
+  std::string scene;
   bench::StatedParams stated;
   std::string shared;
   std::string output = "docs";
@@ -159,9 +160,9 @@ int run_stated(const BenchOptions& options) {
 int run_tables(const BenchOptions& options, const std::filesystem::path& shared) {
   for (const bench::Bench& table_of : bench::kBenches) {
     if (options.name != "all" && options.name != table_of.name) continue;
-    const auto table = options.scene.empty() ? table_of.run(shared, options.common.threads)
-                                             : bench::measure_budget_in(shared, options.scene,
-                                                                        options.common.threads);
+    const auto table = options.scene.empty()
+                           ? table_of.run(shared, options.common.threads)
+                           : table_of.run_in(shared, options.scene, options.common.threads);
     if (!table) return report(table.error(), options.common);
     if (options.common.json)
       std::printf("%s\n", table->json.dump(2).c_str());
@@ -171,12 +172,15 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
   return kDone;
 }
 
+bool takes_scene(const std::string& name) {
+  const auto is_it = [&](const bench::Bench& b) { return name == b.name && b.run_in; };
+  return name == kRelight || name == kGallery || std::ranges::any_of(bench::kBenches, is_it);
+}
+
 int run_bench(const BenchOptions& options) {
-  if (!options.scene.empty() && options.name != kRelight && options.name != kGallery &&
-      options.name != kBudget)
-    return report_usage(
-        "--scene belongs to `luxel bench gallery`, `luxel bench relight` and `luxel bench budget`",
-        options.common);
+  if (!options.scene.empty() && !takes_scene(options.name))
+    return report_usage("--scene belongs to `luxel bench` gallery, relight, budget and rms",
+                        options.common);
   const bool of_stated = options.stated.first_seed != 1 || !options.stated.only.empty();
   if (of_stated && options.name != kStated)
     return report_usage("--first-seed and --only belong to `luxel bench stated`", options.common);
@@ -225,7 +229,7 @@ void register_bench(CLI::App& app, Action& action) {
       "--scene", options->scene,
       "gallery: this scene alone, by its file's stem; the rest of the page stays. "
       "relight: only the comparison with the path tracer in this scene, without files. "
-      "budget: only the rows of this scene, by its file's stem");
+      "budget, rms: only the rows of this scene, by its file's stem");
   bench
       ->add_option("--first-seed", options->stated.first_seed,
                    "stated: the first of the hundred scenes' seeds (default: 1)")

@@ -21,7 +21,7 @@ packages=(
   libassimp-dev                      # OBJ, FBX, Collada, ...
   libeigen3-dev                      # least squares
   libcgal-dev                        # exact predicates, constrained Delaunay triangulation
-  zlib1g-dev                         # checksums
+  zlib1g-dev                         # checksums, PNG
   libvulkan-dev libvulkan-volk-dev glslang-tools # graphics devices
   libglfw3-dev libimgui-dev libfreetype-dev      # the window and its panels
   libcli11-dev libfmt-dev libexpected-dev

@@ -160,7 +160,12 @@ std::vector<std::byte> encode_png(const Image8& image) {
 
   std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   append_chunk("IHDR", header, out);
-  append_chunk("IDAT", zipped(rows, rows_of_strip * (1 + row_bytes)), out);
+  // A chunk has less than 2^31 bytes; data may go on in the next.
+  constexpr size_t kMostOfChunk = size_t(1) << 30;
+  const std::vector<uint8_t> data = zipped(rows, rows_of_strip * (1 + row_bytes));
+  for (size_t at = 0; at < data.size(); at += kMostOfChunk)
+    append_chunk("IDAT", std::span(data).subspan(at, std::min(kMostOfChunk, data.size() - at)),
+                 out);
   append_chunk("IEND", {}, out);
   const auto* bytes = reinterpret_cast<const std::byte*>(out.data());
   return {bytes, bytes + out.size()};

@@ -14,9 +14,8 @@ namespace {
 constexpr double kRowMargin = 0.01;
 
 /// A camera in double precision. Through the pixel's place (x, y) goes the ray from eye along
-/// forward + aside, or seen in parallel from eye + aside along forward; aside = x right_px - y
-/// up_px
-/// - corner.
+/// forward + aside, or seen in parallel from eye + aside along forward, where
+/// aside = x right_px - y up_px - corner.
 struct Eye {
   DVec3 eye, forward, up, right_px, up_px, corner;
   bool is_parallel = false;

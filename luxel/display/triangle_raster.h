@@ -1,4 +1,5 @@
-// Which triangle each pixel of a camera sees, without rays: the rows of each triangle are filled.
+// A raster of triangles: the one that each pixel of a camera sees is found without rays, by filling
+// the rows of each triangle.
 #pragma once
 
 #include <cstdint>

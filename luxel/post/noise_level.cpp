@@ -87,7 +87,7 @@ struct Level {
   Rgb per_channel{1, 1, 1};
 };
 
-Level level_of(Window& window) {
+Level level_of(const Window& window) {
   const float stated = window.stated / window.weight;
   if (window.ratio.size() >= kMinDifferences) {
     const float shown = median(window.ratio);

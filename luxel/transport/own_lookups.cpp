@@ -58,19 +58,6 @@ LookupPlace nearest_around(const TexelSpots& texels, const Spot& here, const Loo
   return best;
 }
 
-/// The points' spots; what leans over them is found.
-void find_spots(const OwnSides& sides, std::span<const scene::SurfacePoint> points,
-                LookupBuffers& b) {
-  b.here.clear(), b.rays.clear();
-  SpotMaker maker{sides.scene, sides.atlas};
-  for (const scene::SurfacePoint& p : points)
-    b.here.push_back(maker.spot(p)), b.rays.push_back(line_up(b.here.back()));
-  b.hits.resize(b.rays.size());
-  sides.tracer.closest_hits(b.rays, b.hits);
-  for (size_t i = 0; i < points.size(); ++i)
-    if (b.hits[i].found()) b.here[i].line_height = kLowHeight;
-}
-
 /// Texels beside walls are asked for again and again.
 Spot texel_spot(const TexelSpots& texels, uint32_t texel, LookupBuffers& b) {
   if (b.known.empty()) return texels.spot(texel);
@@ -81,7 +68,8 @@ Spot texel_spot(const TexelSpots& texels, uint32_t texel, LookupBuffers& b) {
 
 /// Looks which of their four texels the spots see.
 void find_own(const TexelSpots& texels, std::span<const LookupPlace> places, LookupBuffers& b) {
-  b.four.assign(places.size(), {}), b.lines.clear(), b.rays.clear();
+  auto& [rays, hits] = b.traced;
+  b.four.assign(places.size(), {}), b.lines.clear(), rays.clear();
   for (uint32_t i = 0; i < places.size(); ++i) {
     const auto [x0, y0] = first_texel(texels.in, places[i]);
     for (uint32_t k = 0; k < 4; ++k) {
@@ -89,15 +77,14 @@ void find_own(const TexelSpots& texels, std::span<const LookupPlace> places, Loo
       if (texel == atlas::kNone) continue;
       const Spot there = texel_spot(texels, texel, b);
       if (is_far(b.here[i], there)) continue;
-      b.lines.push_back({i, k, there}), b.rays.push_back(line_between(b.here[i], there));
+      b.lines.push_back({i, k, there}), rays.push_back(line_between(b.here[i], there));
     }
   }
-  b.hits.resize(b.rays.size());
-  texels.in.tracer.closest_hits(b.rays, b.hits);
+  hits.resize(rays.size());
+  texels.in.tracer.closest_hits(rays, hits);
   for (size_t n = 0; n < b.lines.size(); ++n) {
     const auto& [i, k, there] = b.lines[n];
-    b.four[i].is_own[k] =
-        !is_between(texels.in.scene, texels.in.atlas, b.here[i], there, b.hits[n]);
+    b.four[i].is_own[k] = !is_between(texels.in.scene, texels.in.atlas, b.here[i], there, hits[n]);
   }
 }
 
@@ -109,7 +96,7 @@ void own_lookups(const OwnSides& sides, std::span<const scene::SurfacePoint> poi
   if (points.empty()) return;
   for (size_t i = 0; i < points.size(); ++i) places[i] = lookup_place(sides.atlas, points[i]);
   const TexelSpots texels{sides};
-  find_spots(sides, points, buffers);
+  spots_at(sides.scene, sides.atlas, sides.tracer, points, buffers.traced, buffers.here);
   find_own(texels, places, buffers);
   for (size_t i = 0; i < points.size(); ++i) {
     const LookupPlace own = nearest_own(places[i], buffers.four[i]);

@@ -32,8 +32,7 @@ struct LookupBuffers {
   std::vector<Spot> here;
   std::vector<Four> four;
   std::vector<Line> lines;
-  std::vector<trace::Ray> rays;
-  std::vector<trace::Hit> hits;
+  SpotBuffers traced;  ///< of the places, then of the lines
 };
 
 /// own_lookup() of points whose four texels lie on several sides of a wall, or may. Their rays are

@@ -41,18 +41,25 @@ Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::
   return spots_at(scene, atlas, tracer, {&p, 1}).front();
 }
 
+void spots_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
+              std::span<const scene::SurfacePoint> places, SpotBuffers& buffers,
+              std::vector<Spot>& out) {
+  SpotMaker maker{scene, atlas};
+  out.clear(), buffers.rays.clear();
+  for (const scene::SurfacePoint& p : places)
+    out.push_back(maker.spot(p)), buffers.rays.push_back(line_up(out.back()));
+  buffers.hits.resize(buffers.rays.size());
+  tracer.closest_hits(buffers.rays, buffers.hits);
+  for (size_t k = 0; k < out.size(); ++k)
+    if (buffers.hits[k].found()) out[k].line_height = kLowHeight;
+}
+
 std::vector<Spot> spots_at(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const trace::RayTracer& tracer,
                            std::span<const scene::SurfacePoint> places) {
-  SpotMaker maker{scene, atlas};
+  SpotBuffers buffers;
   std::vector<Spot> out;
-  std::vector<trace::Ray> rays;
-  for (const scene::SurfacePoint& p : places)
-    out.push_back(maker.spot(p)), rays.push_back(line_up(out.back()));
-  std::vector<trace::Hit> above(rays.size());
-  tracer.closest_hits(rays, above);
-  for (size_t k = 0; k < out.size(); ++k)
-    if (above[k].found()) out[k].line_height = kLowHeight;
+  spots_at(scene, atlas, tracer, places, buffers, out);
   return out;
 }
 

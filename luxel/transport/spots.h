@@ -40,7 +40,15 @@ struct SpotMaker {
 
 Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
              const scene::SurfacePoint& p);
-/// spot_at() of many places, whose rays are traced together.
+/// Rays, as those up from places, and what they meet; reused from call to call.
+struct SpotBuffers {
+  std::vector<trace::Ray> rays;
+  std::vector<trace::Hit> hits;
+};
+/// spot_at() of many places, whose rays are traced together, into `out`.
+void spots_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
+              std::span<const scene::SurfacePoint> places, SpotBuffers& buffers,
+              std::vector<Spot>& out);
 std::vector<Spot> spots_at(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const trace::RayTracer& tracer,
                            std::span<const scene::SurfacePoint> places);

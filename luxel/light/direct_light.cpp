@@ -112,7 +112,7 @@ void direct_light_at(const DirectScene& lit, const DirectParams& params,
                      std::span<LightAt> out) {
   const Lights& lights = lit.lights;
   LUXEL_CHECK(out.size() == receivers.size());
-  batch.sources.clear(), batch.sources_end.clear(), batch.shadow_rays.clear(), batch.rays.clear();
+  clear(batch);
   for (const Receiver& r : receivers) {
     aim_at_triangles(lit, params.samples, r, batch);
     aim_at_punctual_lights(lights, params.samples, r, batch);

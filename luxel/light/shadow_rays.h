@@ -72,6 +72,11 @@ struct ShadowRayBatch {
   std::vector<Rgb> arriving;  ///< share of each shadow ray's light
 };
 
+/// Forgets all receivers, and keeps the memory for the next ones.
+inline void clear(ShadowRayBatch& batch) {
+  batch.sources.clear(), batch.sources_end.clear(), batch.shadow_rays.clear(), batch.rays.clear();
+}
+
 /// Adds a shadow ray that ends at `target`, or, with t_max infinite, goes on for ever. A
 /// direction below the receiver's own triangle is blocked by it: it counts, without a ray.
 inline void add_shadow_ray(ShadowRayBatch& batch, const Receiver& at, ShadowRay ray, Vec3 direction,

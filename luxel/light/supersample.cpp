@@ -188,6 +188,14 @@ std::vector<uint32_t> border_texels(const atlas::Atlas& atlas, const atlas::Texe
   return out;
 }
 
+/// Keeps those of `which` that are marked, by their place there.
+void keep_marked(std::span<const uint8_t> marked, std::vector<uint32_t>& which) {
+  size_t kept = 0;
+  for (size_t k = 0; k < which.size(); ++k)
+    if (marked[k]) which[kept++] = which[k];
+  which.resize(kept);
+}
+
 /// Keeps those of `which` whose light differs at some of a few points. Where a chart ends there is
 /// no neighbour who would tell of a shadow's edge. Returns the number of rays.
 Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& params, int points,
@@ -218,56 +226,28 @@ Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& para
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
-  size_t kept = 0;
-  for (size_t k = 0; k < which.size(); ++k)
-    if (uneven[k]) which[kept++] = which[k];
-  which.resize(kept);
+  keep_marked(uneven, which);
   return uint64_t(rays);
 }
 
-/// Texels beside those of `which` in their charts, but for those that are marked in `asked`; they
-/// are marked now. In the order of the map.
-std::vector<uint32_t> beside(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                             std::span<const uint32_t> which, std::vector<uint8_t>& asked) {
-  const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
+/// Those of `among` that are not in `known` and face a punctual light; all in the order of the map.
+std::vector<uint32_t> facing_punctual_lights(const TexelScene& in, std::span<const uint32_t> among,
+                                             std::span<const uint32_t> known) {
+  if (in.lights.punctual.empty()) return {};
   std::vector<uint32_t> out;
-  for (const uint32_t i : which)
-    atlas::for_neighbours(map, i, 1, [&](uint32_t j) {
-      if (asked[j] || chart_of(i) != chart_of(j)) return;
-      asked[j] = 1;
-      out.push_back(j);
-    });
-  std::ranges::sort(out);
+  std::ranges::set_difference(among, known, std::back_inserter(out));
+  const PointScene place = point_scene(in);
+  std::vector<uint8_t> faces(out.size());
+  parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
+    ShadowRayBatch aimed;
+    for (size_t k = begin; k < end; ++k) {
+      clear(aimed);
+      aim_at_punctual_lights(in.lights, 1, own_receiver(place, in.elements, out[k]), aimed);
+      faces[k] = !aimed.rays.empty();
+    }
+  });
+  keep_marked(faces, out);
   return out;
-}
-
-/// All texels whose light differs from their neighbours', and those that may be added.
-struct FleckTexels {
-  std::span<const uint32_t> uneven, among;
-};
-
-/// Adds texels to `which` that lie beside those whose light varies, and whose own does: flecks of
-/// sun between leaves are smaller than texels, and the samples of neighbours miss them together.
-/// Soft light has none. Returns the number of rays.
-Result<uint64_t> add_flecks(const TexelScene& in, FleckTexels texels,
-                            const SupersampleParams& params, const DirectLight& direct,
-                            std::vector<uint32_t>& which, Progress& progress) {
-  if (in.lights.punctual.empty()) return uint64_t(0);
-  std::vector<uint8_t> asked(in.map.texels.size(), 1);
-  for (const uint32_t i : texels.among) asked[i] = 0;
-  for (const uint32_t i : which) asked[i] = 1;
-  std::vector<uint32_t> last;
-  std::ranges::set_union(texels.uneven, which, std::back_inserter(last));
-  uint64_t rays = 0;
-  while (!last.empty()) {
-    last = beside(in.atlas, in.map, last, asked);
-    LUXEL_TRY(const uint64_t traced, keep_uneven(in, params, kFleckPoints, direct, last, progress));
-    rays += traced;
-    std::vector<uint32_t> all;
-    std::ranges::merge(which, last, std::back_inserter(all));
-    which = std::move(all);
-  }
-  return rays;
 }
 
 }  // namespace
@@ -284,14 +264,18 @@ Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t>
                                  Progress& progress) {
   if (params.points == 1) return Supersampled{};
   const std::vector<uint32_t> all = uneven_texels(in.atlas, in.map, direct, params.threshold);
-  std::vector<uint32_t> uneven, borders, which;
+  std::vector<uint32_t> uneven, borders, known, which;
   std::ranges::set_intersection(all, among, std::back_inserter(uneven));
   std::ranges::set_intersection(border_texels(in.atlas, in.map, uneven), among,
                                 std::back_inserter(borders));
   LUXEL_TRY(const uint64_t rays, keep_uneven(in, params, kBorderPoints, direct, borders, progress));
-  std::ranges::merge(uneven, borders, std::back_inserter(which));
+  std::ranges::merge(uneven, borders, std::back_inserter(known));
+  // Flecks of sun between leaves are smaller than texels: the samples of a texel and of all its
+  // neighbours can miss them. Soft light has none.
+  std::vector<uint32_t> flecks = facing_punctual_lights(in, among, known);
   LUXEL_TRY(const uint64_t of_flecks,
-            add_flecks(in, {all, among}, params, direct, which, progress));
+            keep_uneven(in, params, kFleckPoints, direct, flecks, progress));
+  std::ranges::merge(known, flecks, std::back_inserter(which));
   LUXEL_TRY(Supersampled out, average_texels(in, which, params, direct, progress));
   out.rays += rays + of_flecks;
   return out;

@@ -51,14 +51,15 @@ struct Footprints {
 /// points need 576 bytes a texel. Errors: cancelled.
 Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, Progress& progress);
 
-/// Replaces the direct light of uneven texels, and of those at a chart's border where it differs
-/// between points of the texel, by its mean over `points` points of their footprint,
-/// and its variance by an estimate for that mean; all others, and hidden ones, keep their bits.
+/// Replaces the direct light of uneven texels, and of those at a chart's border or in the light of
+/// a punctual light where it differs between points of the texel, by its mean over `points` points
+/// of their footprint, and its variance by an estimate for that mean; all others, and hidden ones,
+/// keep their bits.
 /// Errors: cancelled.
 Result<Supersampled> supersample(const TexelScene& in, const SupersampleParams& params,
                                  DirectLight& direct, Progress& progress);
 
-/// Supersamples the uneven texels and borders that are in `among`, in the order of the map.
+/// Supersamples those of them that are in `among`, which is in the order of the map.
 Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t> among,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress);

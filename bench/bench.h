@@ -39,6 +39,8 @@ using BenchFunction = Result<Table> (*)(const std::filesystem::path& shared, int
 
 /// Gather's rays per second against a bare loop of rtcIntersect1 over the same rays.
 Result<Table> measure_rays(const std::filesystem::path& shared, int threads);
+/// Rays per second of a graphics device against those of the processor.
+Result<Table> measure_gpu(const std::filesystem::path& shared, int threads);
 /// Those of rays that texels share the directions of, against gather's own: an experiment.
 Result<Table> measure_bundles(const std::filesystem::path& shared, int threads);
 /// The Cornell box of [Moreno05, table 5.1] at four resolutions.
@@ -101,6 +103,7 @@ inline constexpr std::array kBenches{Bench{"rays", measure_rays},
                                      Bench{"rebake", measure_rebake},
                                      Bench{"quality", measure_quality},
                                      Bench{"rms", measure_rms, measure_rms_in},
-                                     Bench{"bundles", measure_bundles}};
+                                     Bench{"bundles", measure_bundles},
+                                     Bench{"gpu", measure_gpu}};
 
 }  // namespace luxel::bench

@@ -6,15 +6,14 @@
 #include <chrono>
 
 #include "bench/bench.h"
+#include "bench/scenes_of_rays.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
-#include "luxel/import/import.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/gather.h"
 #include "luxel/solve/gather/rays/element_rays.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 #include "luxel/trace/ray_tracer.h"
-#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -114,24 +113,6 @@ double gather_rate(const validate::Prepared& p, int samples) {
   return hits ? double(hits->rays) / seconds_since(start) : 0.0;
 }
 
-struct NamedScene {
-  std::string name;
-  std::filesystem::path file;  ///< empty: procedural
-};
-
-/// Whether the scene's file is on this machine; notes it in the table when not.
-bool is_here(const NamedScene& named, Table& table) {
-  if (named.file.empty() || std::filesystem::exists(named.file)) return true;
-  table.notes.push_back(named.file.string() + " is not on this machine: left out");
-  return false;
-}
-
-Result<scene::Scene> load(const NamedScene& named) {
-  if (named.file.empty()) return scene::cornell_box();
-  LUXEL_TRY(import::Imported imported, import::import_scene(named.file));
-  return std::move(imported.scene);
-}
-
 }  // namespace
 
 Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
@@ -143,13 +124,7 @@ Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
               {},
               {},
               nlohmann::json::array()};
-  const auto scenes = shared / "scenes";
-  for (const NamedScene& named :
-       {NamedScene{"Cornell box", {}},
-        NamedScene{"living_room", scenes / "living_room/living_room.glb"},
-        NamedScene{"suzanne_room", scenes / "suzanne_room/room.glb"},
-        NamedScene{"zdm2", scenes / "zdm2/zdm2.glb"},
-        NamedScene{"kaykit_city", scenes / "kaykit_city/kaykit_city.glb"}}) {
+  for (const NamedScene& named : scenes_of_rays(shared)) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     Progress layout;

@@ -1,0 +1,136 @@
+// luxel bench gpu: rays on a graphics device beside those on the processor.
+#include <algorithm>
+
+#include "bench/bench.h"
+#include "bench/scenes_of_rays.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/trace/vulkan/device_ray_tracer.h"
+
+namespace luxel::bench {
+namespace {
+
+constexpr int kRaysPerElement = 64, kDeviceRounds = 5;
+/// Rays of a scene, at most: enough for a second of a fast device, and for some of a slow one.
+constexpr size_t kMostRays = 1u << 24, kMostRaysOfProcessor = 1u << 20;
+/// Elements whose rays of one cell of directions follow each other.
+constexpr size_t kTogether = 64;
+
+/// Gather's rays of groups of neighbouring elements, spread over the map.
+struct Rays {
+  std::vector<trace::Ray> by_element;  ///< all rays of an element after each other
+  std::vector<trace::Ray> sorted;      ///< those of a group by cells of directions
+};
+
+Rays rays_of(const validate::Prepared& p, size_t most) {
+  const float diagonal = scene::world_bounds(p.scene).diagonal();
+  const size_t groups = p.elements.size() / kTogether;
+  const size_t wanted = std::min(groups, most / (kTogether * kRaysPerElement));
+  Rays out;
+  out.by_element.resize(wanted * kTogether * kRaysPerElement),
+      out.sorted.resize(out.by_element.size());
+  parallel_for(wanted, 1, [&](size_t begin, size_t end) {
+    for (size_t g = begin; g < end; ++g) {
+      const size_t first = g * groups / wanted * kTogether;
+      for (size_t k = 0; k < kTogether; ++k) {
+        const size_t i = first + k;
+        const std::span own =
+            std::span(out.by_element)
+                .subspan((g * kTogether + k) * kRaysPerElement, size_t(kRaysPerElement));
+        gather::element_rays(
+            trace::offset_origin(p.elements.position[i], p.elements.geometric_normal[i], diagonal),
+            p.elements.normal[i], p.elements.geometric_normal[i], hash64(1 ^ 0x6a7e, i), own);
+        for (size_t s = 0; s < size_t(kRaysPerElement); ++s)
+          out.sorted[(g * size_t(kRaysPerElement) + s) * kTogether + k] = own[s];
+      }
+    }
+  });
+  return out;
+}
+
+/// Rays per second of the processor.
+double processor_rate(const trace::RayTracer& tracer, std::span<const trace::Ray> rays,
+                      std::span<trace::Hit> hits) {
+  const auto start = Clock::now();
+  parallel_for(rays.size(), 4096, [&](size_t begin, size_t end) {
+    tracer.closest_hits(rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
+  });
+  return double(rays.size()) / seconds_since(start);
+}
+
+/// Median of some rounds after a first, of rays that lie on the device.
+Result<double> device_rate(trace::DeviceRayTracer& tracer, std::span<const trace::Ray> rays) {
+  LUXEL_TRY(trace::DeviceRays there, tracer.upload(rays));
+  LUXEL_TRY([[maybe_unused]] const double first, tracer.closest_hits(there));
+  std::vector<double> rates;
+  for (int round = 0; round < kDeviceRounds; ++round) {
+    LUXEL_TRY(const double seconds, tracer.closest_hits(there));
+    rates.push_back(double(rays.size()) / seconds);
+  }
+  std::ranges::sort(rates);
+  return rates[kDeviceRounds / 2];
+}
+
+/// The share of rays that meet another triangle, or the other side of it.
+double share_of_others(std::span<const trace::Hit> a, std::span<const trace::Hit> b) {
+  size_t others = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    others += a[i].instance != b[i].instance || a[i].triangle != b[i].triangle ||
+              a[i].back_face != b[i].back_face;
+  return double(others) / double(std::max<size_t>(a.size(), 1));
+}
+
+Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::Device& device,
+                     Table& table) {
+  // All surfaces block: rays on the device know no others yet, and both sides trace the same.
+  for (scene::Material& m : loaded.materials)
+    m.alpha_mode = scene::AlphaMode::opaque, m.transmission = 0;
+  Progress layout;
+  LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), 512, layout));
+  const bool is_processor = device.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const Rays rays = rays_of(*p, is_processor ? kMostRaysOfProcessor : kMostRays);
+  const auto start = Clock::now();
+  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p->scene));
+  const double built_s = seconds_since(start);
+  std::vector<trace::Hit> expected(rays.sorted.size()), hits(rays.sorted.size());
+  const double processor = processor_rate(*p->tracer, rays.sorted, expected);
+  LUXEL_TRY(const double by_element, device_rate(tracer, rays.by_element));
+  LUXEL_TRY(const double sorted, device_rate(tracer, rays.sorted));
+  LUXEL_TRY_STATUS(tracer.closest_hits(rays.sorted, hits));
+  const double others = share_of_others(expected, hits);
+  table.rows.push_back({name, std::to_string(tracer.triangles()),
+                        fmt::format("{:.1f}", double(rays.sorted.size()) * 1e-6),
+                        fmt::format("{:.2f}", processor * 1e-6),
+                        fmt::format("{:.1f}", by_element * 1e-6),
+                        fmt::format("{:.1f}", sorted * 1e-6), fmt::format("{:.4f}", 100 * others),
+                        fmt::format("{:.0f}", built_s * 1e3)});
+  table.json.push_back({{"scene", name},
+                        {"triangles", tracer.triangles()},
+                        {"rays", rays.sorted.size()},
+                        {"processor_mrays_per_s", processor * 1e-6},
+                        {"device_mrays_per_s", by_element * 1e-6},
+                        {"device_sorted_mrays_per_s", sorted * 1e-6},
+                        {"share_of_other_triangles", others},
+                        {"build_s", built_s}});
+  return {};
+}
+
+}  // namespace
+
+Result<Table> measure_gpu(const std::filesystem::path& shared, int threads) {
+  const ThreadLimit limit(threads);
+  Table table = new_table("gpu", {"scene", "triangles", "rays [millions]", "processor, Mrays/s",
+                                  "device, Mrays/s", "device, rays sorted, Mrays/s",
+                                  "rays that meet another triangle [%]", "hierarchy [ms]"});
+  LUXEL_TRY(const auto device, gpu::Device::open({}));
+  table.notes.push_back("device: " + device->name);
+  for (const NamedScene& named : scenes_of_rays(shared)) {
+    if (!is_here(named, table)) continue;
+    LUXEL_TRY(scene::Scene scene, load(named));
+    LUXEL_TRY_STATUS(measure_scene(named.name, std::move(scene), *device, table));
+  }
+  return table;
+}
+
+}  // namespace luxel::bench

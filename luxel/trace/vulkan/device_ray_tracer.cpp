@@ -1,0 +1,208 @@
+#include "luxel/trace/vulkan/device_ray_tracer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include "luxel/base/check.h"
+#include "luxel/base/clock.h"
+#include "luxel/base/parallel.h"
+#include "luxel/scene/drawn_triangle.h"
+#include "luxel/scene/sides.h"
+#include "luxel/trace/vulkan/binary_hierarchy.h"
+#include "luxel/trace/vulkan/shaders/closest.comp.h"
+#include "luxel/trace/vulkan/shaders/occluded.comp.h"
+
+namespace luxel::trace {
+namespace {
+
+constexpr size_t kGroup = 64;  // as the shaders have it
+/// Rays of the first dispatch: few enough for a slow device. Later ones take as long as this:
+/// drivers reset a device that works for seconds, and a screen waits for what is under way.
+constexpr size_t kFirstDispatch = 4096;
+constexpr double kDispatchSeconds = 0.02;
+/// A dispatch has at most so many times the rays of the one before.
+constexpr double kMostGrowth = 4;
+
+struct TracePush {
+  VkDeviceAddress nodes, triangles, rays, out;
+  uint32_t first, end;
+};
+
+/// The first surface that lets some light through; kNone: all block.
+const scene::Material* see_through(const scene::Scene& scene) {
+  for (const scene::Instance& instance : scene.instances)
+    for (const uint32_t m : scene.meshes[instance.mesh].triangle_material)
+      if (scene::lets_light_through(scene.materials[m])) return &scene.materials[m];
+  return nullptr;
+}
+
+template <class T>
+Result<gpu::Buffer> device_buffer(const gpu::Device& device, gpu::Commands& commands,
+                                  const std::vector<T>& values, std::string_view what) {
+  const auto bytes = std::as_bytes(std::span(values));
+  LUXEL_TRY(const gpu::Buffer sent, gpu::buffer_with(device, bytes, what));
+  LUXEL_TRY(gpu::Buffer out, gpu::make_buffer(device, bytes.size(), gpu::Access::device, what));
+  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {
+    const VkBufferCopy all{0, 0, bytes.size()};
+    device.vk.vkCmdCopyBuffer(c, sent.buffer.get(), out.buffer.get(), 1, &all);
+  }));
+  return out;
+}
+
+}  // namespace
+
+DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene,
+                                 gpu::Commands commands)
+    : device_(&device),
+      scene_(&scene),
+      commands_(std::move(commands)),
+      first_triangle_(scene::first_triangles(scene)),
+      rays_per_dispatch_(kFirstDispatch) {}
+
+Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device,
+                                               const scene::Scene& scene) {
+  if (const scene::Material* open = see_through(scene))
+    return fail(ErrorCode::unsupported,
+                "{}: rays on the device know no surface that lets light through, as material '{}' "
+                "does; trace them on the processor",
+                device.name, open->name);
+  std::vector<DeviceTriangle> triangles = device_triangles(scene);
+  if (triangles.size() >= ChildRef::kFirstMask)
+    return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
+                ChildRef::kFirstMask - 1, triangles.size());
+  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
+  DeviceRayTracer out(device, scene, std::move(commands));
+  out.triangle_count_ = triangles.size();
+  BinaryHierarchy hierarchy = sort_into_hierarchy(std::move(triangles));
+  if (hierarchy.triangles.empty()) hierarchy.triangles.emplace_back();  // a buffer is never empty
+  LUXEL_TRY(out.nodes_, device_buffer(device, out.commands_, hierarchy.nodes,
+                                      "the buffer of boxes around triangles"));
+  LUXEL_TRY(out.triangles_,
+            device_buffer(device, out.commands_, hierarchy.triangles, "the buffer of triangles"));
+  const gpu::Interface interface {
+    sizeof(TracePush), {}
+  };
+  LUXEL_TRY(out.closest_, gpu::make_compute_pipeline(device, closest_comp, interface));
+  LUXEL_TRY(out.occluded_, gpu::make_compute_pipeline(device, occluded_comp, interface));
+  return out;
+}
+
+Result<double> DeviceRayTracer::dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays,
+                                         VkDeviceAddress out, size_t count) {
+  const size_t most = std::min<size_t>(device_->limits.maxComputeWorkGroupCount[0], 1u << 20);
+  double seconds = 0;
+  for (size_t first = 0; first < count;) {
+    const size_t some = std::min(rays_per_dispatch_, count - first);
+    const TracePush push{nodes_.address,  triangles_.address,    rays, out,
+                         uint32_t(first), uint32_t(first + some)};
+    const auto start = Clock::now();
+    LUXEL_TRY_STATUS(commands_.run([&](VkCommandBuffer c) {
+      gpu::bind(*device_, c, pipeline, push);
+      device_->vk.vkCmdDispatch(c, uint32_t((some + kGroup - 1) / kGroup), 1, 1);
+    }));
+    const double took = seconds_since(start);
+    seconds += took, first += some;
+    const double next = double(some) * std::min(kMostGrowth, kDispatchSeconds / took);
+    rays_per_dispatch_ = std::clamp(size_t(next), kGroup, most * kGroup);
+  }
+  return seconds;
+}
+
+Status DeviceRayTracer::copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes) {
+  return commands_.run([&](VkCommandBuffer c) {
+    const VkBufferCopy some{0, 0, bytes};
+    device_->vk.vkCmdCopyBuffer(c, from.buffer.get(), to.buffer.get(), 1, &some);
+    gpu::full_barrier(*device_, c);
+  });
+}
+
+Status DeviceRayTracer::make_room(size_t count) {
+  if (room_.count >= count) return {};
+  room_ = {}, sent_ = {}, answered_ = {};
+  constexpr std::string_view kWhat = "the buffer of rays";
+  LUXEL_TRY(sent_, gpu::make_buffer(*device_, count * sizeof(Ray), gpu::Access::from_host, kWhat));
+  LUXEL_TRY(answered_,
+            gpu::make_buffer(*device_, count * sizeof(DeviceHit), gpu::Access::to_host, kWhat));
+  LUXEL_TRY(room_.rays,
+            gpu::make_buffer(*device_, count * sizeof(Ray), gpu::Access::device, kWhat));
+  LUXEL_TRY(room_.hits,
+            gpu::make_buffer(*device_, count * sizeof(DeviceHit), gpu::Access::device, kWhat));
+  room_.count = count;
+  return {};
+}
+
+namespace {
+
+/// A device's hit as those of RayTracer: what has two sides is met on the side that the ray comes
+/// from.
+Hit hit_of(const scene::Scene& scene, std::span<const uint32_t> first_triangle,
+           const DeviceHit& met) {
+  if (met.number == DeviceHit::kNoTriangle) return {};
+  const auto drawn = scene::drawn_triangle(first_triangle, met.number & ~DeviceHit::kBackFace);
+  Hit out{met.t,
+          drawn.instance,
+          drawn.triangle,
+          {met.u, met.v},
+          (met.number & DeviceHit::kBackFace) != 0};
+  if (!out.back_face) return out;
+  if (const auto other = scene::other_side_of(scene, out.point()))
+    out.triangle = other->triangle, out.at = other->at, out.back_face = false;
+  return out;
+}
+
+}  // namespace
+
+Status DeviceRayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) {
+  LUXEL_CHECK(rays.size() == hits.size());
+  for (size_t first = 0; first < rays.size(); first += kRaysAtATime) {
+    const size_t count = std::min(kRaysAtATime, rays.size() - first);
+    LUXEL_TRY_STATUS(make_room(count));
+    std::memcpy(sent_.mapped, rays.data() + first, count * sizeof(Ray));
+    LUXEL_TRY_STATUS(copy(sent_, room_.rays, count * sizeof(Ray)));
+    LUXEL_TRY([[maybe_unused]] const double seconds,
+              dispatch(closest_, room_.rays.address, room_.hits.address, count));
+    LUXEL_TRY_STATUS(copy(room_.hits, answered_, count * sizeof(DeviceHit)));
+    const auto* met = reinterpret_cast<const DeviceHit*>(answered_.mapped);
+    parallel_for(count, 4096, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        hits[first + i] = hit_of(*scene_, first_triangle_, met[i]);
+    });
+  }
+  return {};
+}
+
+Status DeviceRayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) {
+  LUXEL_CHECK(rays.size() == blocked.size());
+  for (size_t first = 0; first < rays.size(); first += kRaysAtATime) {
+    const size_t count = std::min(kRaysAtATime, rays.size() - first);
+    LUXEL_TRY_STATUS(make_room(count));
+    std::memcpy(sent_.mapped, rays.data() + first, count * sizeof(Ray));
+    LUXEL_TRY_STATUS(copy(sent_, room_.rays, count * sizeof(Ray)));
+    LUXEL_TRY([[maybe_unused]] const double seconds,
+              dispatch(occluded_, room_.rays.address, room_.hits.address, count));
+    LUXEL_TRY_STATUS(copy(room_.hits, answered_, count * sizeof(uint32_t)));
+    const auto* is_blocked = reinterpret_cast<const uint32_t*>(answered_.mapped);
+    for (size_t i = 0; i < count; ++i) blocked[first + i] = is_blocked[i] != 0;
+  }
+  return {};
+}
+
+Result<DeviceRays> DeviceRayTracer::upload(std::span<const Ray> rays) {
+  LUXEL_CHECK(!rays.empty() && rays.size() <= UINT32_MAX);
+  DeviceRays out;
+  out.count = rays.size();
+  constexpr std::string_view kWhat = "the buffer of rays";
+  LUXEL_TRY(const gpu::Buffer sent, gpu::buffer_with(*device_, std::as_bytes(rays), kWhat));
+  LUXEL_TRY(out.rays, gpu::make_buffer(*device_, sent.size, gpu::Access::device, kWhat));
+  LUXEL_TRY(out.hits, gpu::make_buffer(*device_, rays.size() * sizeof(DeviceHit),
+                                       gpu::Access::device, kWhat));
+  LUXEL_TRY_STATUS(copy(sent, out.rays, sent.size));
+  return out;
+}
+
+Result<double> DeviceRayTracer::closest_hits(DeviceRays& rays) {
+  return dispatch(closest_, rays.rays.address, rays.hits.address, rays.count);
+}
+
+}  // namespace luxel::trace

@@ -1,0 +1,75 @@
+// What rays meet, found by a graphics device.
+#pragma once
+
+#include <span>
+
+#include "luxel/gpu/buffer.h"
+#include "luxel/gpu/commands.h"
+#include "luxel/gpu/pipeline.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::trace {
+
+/// Rays in a device's memory, and room for what they meet.
+struct DeviceRays {
+  size_t count = 0;
+  gpu::Buffer rays;  ///< trace::Ray, as on the processor
+  gpu::Buffer hits;  ///< DeviceHit of each, once closest_hits() has run
+};
+
+/// What a ray meets, as devices leave it.
+struct DeviceHit {
+  float t = 0, u = 0, v = 0;
+  uint32_t number = 0;  ///< of the drawn triangle, kBackFace added; or kNoTriangle
+
+  static constexpr uint32_t kBackFace = 1u << 31, kNoTriangle = UINT32_MAX;
+};
+static_assert(sizeof(DeviceHit) == 16 && sizeof(Ray) == 32);
+
+/// Rays and triangles in a device's memory. It answers as RayTracer does, up to rounding: rays that
+/// graze an edge may meet its other side, and of surfaces that coincide either may be met. Surfaces
+/// all block: of masks and of what light goes through it knows nothing. `device` and `scene` are
+/// kept by reference and must outlive it. One thread at a time uses it.
+class DeviceRayTracer {
+ public:
+  /// Errors: a surface that lets light through (ErrorCode::unsupported), 2^28 triangles or more, no
+  /// memory, the device is lost.
+  static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene);
+
+  /// hits[i] is what rays[i] meets first. Sizes are equal. They go to the device and back in parts
+  /// of at most kRaysAtATime. Errors: no memory, the device is lost.
+  Status closest_hits(std::span<const Ray> rays, std::span<Hit> hits);
+  /// blocked[i] is 1 when anything lies on rays[i] within (t_min, t_max). Errors: as above.
+  Status occluded(std::span<const Ray> rays, std::span<uint8_t> blocked);
+
+  /// Puts rays into the device's memory. Errors: no memory, the device is lost.
+  Result<DeviceRays> upload(std::span<const Ray> rays);
+  /// Fills rays.hits; returns the seconds that the device took. Errors: the device is lost.
+  Result<double> closest_hits(DeviceRays& rays);
+
+  size_t triangles() const { return triangle_count_; }
+  uint64_t bytes() const { return nodes_.size + triangles_.size; }
+
+  static constexpr size_t kRaysAtATime = 1u << 20;
+
+ private:
+  DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene, gpu::Commands commands);
+  Result<double> dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays, VkDeviceAddress out,
+                          size_t count);
+  Status make_room(size_t count);
+  Status copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes);
+
+  const gpu::Device* device_;
+  const scene::Scene* scene_;
+  gpu::Commands commands_;
+  std::vector<uint32_t> first_triangle_;
+  size_t triangle_count_ = 0;
+  gpu::Buffer nodes_, triangles_;
+  gpu::Pipeline closest_, occluded_;
+  size_t rays_per_dispatch_;
+  // Where rays from the processor and their answers stop on their way.
+  gpu::Buffer sent_, answered_;
+  DeviceRays room_;
+};
+
+}  // namespace luxel::trace

@@ -81,6 +81,50 @@ double share_of_others(std::span<const trace::Hit> a, std::span<const trace::Hit
   return double(others) / double(std::max<size_t>(a.size(), 1));
 }
 
+/// What one kind of hierarchy makes of a scene's rays.
+struct DeviceRates {
+  size_t triangles = 0;
+  double built_s = 0;
+  double by_element = 0, sorted = 0;  ///< rays per second
+  double others = 0;                  ///< share of rays that meet another triangle
+};
+
+Result<DeviceRates> rates_on_device(const gpu::Device& device, const scene::Scene& scene,
+                                    trace::HierarchyKind kind, const Rays& rays,
+                                    std::span<const trace::Hit> expected) {
+  DeviceRates out;
+  const auto start = Clock::now();
+  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, scene, kind));
+  out.built_s = seconds_since(start), out.triangles = tracer.triangles();
+  LUXEL_TRY(out.by_element, device_rate(tracer, rays.by_element));
+  LUXEL_TRY(out.sorted, device_rate(tracer, rays.sorted));
+  std::vector<trace::Hit> hits(rays.sorted.size());
+  LUXEL_TRY_STATUS(tracer.closest_hits(rays.sorted, hits));
+  out.others = share_of_others(expected, hits);
+  return out;
+}
+
+void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, double processor,
+             const DeviceRates& on_device, Table& table) {
+  const char* name = kind == trace::HierarchyKind::wide ? "wide" : "binary";
+  table.rows.push_back({scene, std::to_string(on_device.triangles),
+                        fmt::format("{:.1f}", double(rays) * 1e-6),
+                        fmt::format("{:.2f}", processor * 1e-6), name,
+                        fmt::format("{:.1f}", on_device.by_element * 1e-6),
+                        fmt::format("{:.1f}", on_device.sorted * 1e-6),
+                        fmt::format("{:.4f}", 100 * on_device.others),
+                        fmt::format("{:.0f}", on_device.built_s * 1e3)});
+  table.json.push_back({{"scene", scene},
+                        {"triangles", on_device.triangles},
+                        {"rays", rays},
+                        {"processor_mrays_per_s", processor * 1e-6},
+                        {"hierarchy", name},
+                        {"device_mrays_per_s", on_device.by_element * 1e-6},
+                        {"device_sorted_mrays_per_s", on_device.sorted * 1e-6},
+                        {"share_of_other_triangles", on_device.others},
+                        {"build_s", on_device.built_s}});
+}
+
 Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::Device& device,
                      Table& table) {
   // All surfaces block: rays on the device know no others yet, and both sides trace the same.
@@ -90,29 +134,13 @@ Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::De
   LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), 512, layout));
   const bool is_processor = device.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
   const Rays rays = rays_of(*p, is_processor ? kMostRaysOfProcessor : kMostRays);
-  const auto start = Clock::now();
-  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p->scene));
-  const double built_s = seconds_since(start);
-  std::vector<trace::Hit> expected(rays.sorted.size()), hits(rays.sorted.size());
+  std::vector<trace::Hit> expected(rays.sorted.size());
   const double processor = processor_rate(*p->tracer, rays.sorted, expected);
-  LUXEL_TRY(const double by_element, device_rate(tracer, rays.by_element));
-  LUXEL_TRY(const double sorted, device_rate(tracer, rays.sorted));
-  LUXEL_TRY_STATUS(tracer.closest_hits(rays.sorted, hits));
-  const double others = share_of_others(expected, hits);
-  table.rows.push_back({name, std::to_string(tracer.triangles()),
-                        fmt::format("{:.1f}", double(rays.sorted.size()) * 1e-6),
-                        fmt::format("{:.2f}", processor * 1e-6),
-                        fmt::format("{:.1f}", by_element * 1e-6),
-                        fmt::format("{:.1f}", sorted * 1e-6), fmt::format("{:.4f}", 100 * others),
-                        fmt::format("{:.0f}", built_s * 1e3)});
-  table.json.push_back({{"scene", name},
-                        {"triangles", tracer.triangles()},
-                        {"rays", rays.sorted.size()},
-                        {"processor_mrays_per_s", processor * 1e-6},
-                        {"device_mrays_per_s", by_element * 1e-6},
-                        {"device_sorted_mrays_per_s", sorted * 1e-6},
-                        {"share_of_other_triangles", others},
-                        {"build_s", built_s}});
+  for (const trace::HierarchyKind kind :
+       {trace::HierarchyKind::binary, trace::HierarchyKind::wide}) {
+    LUXEL_TRY(const DeviceRates on_device, rates_on_device(device, p->scene, kind, rays, expected));
+    add_row(name, rays.sorted.size(), kind, processor, on_device, table);
+  }
   return {};
 }
 
@@ -121,8 +149,8 @@ Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::De
 Result<Table> measure_gpu(const std::filesystem::path& shared, int threads) {
   const ThreadLimit limit(threads);
   Table table = new_table("gpu", {"scene", "triangles", "rays [millions]", "processor, Mrays/s",
-                                  "device, Mrays/s", "device, rays sorted, Mrays/s",
-                                  "rays that meet another triangle [%]", "hierarchy [ms]"});
+                                  "hierarchy", "device, Mrays/s", "device, rays sorted, Mrays/s",
+                                  "rays that meet another triangle [%]", "built in [ms]"});
   LUXEL_TRY(const auto device, gpu::Device::open({}));
   table.notes.push_back("device: " + device->name);
   for (const NamedScene& named : scenes_of_rays(shared)) {

@@ -13,8 +13,6 @@ namespace {
 constexpr size_t kBins = 16;
 /// The costs of the heuristic: stepping into a node, over testing a triangle.
 constexpr float kNodeCost = 1.5f;
-/// Triangles of a leaf, at most.
-constexpr uint32_t kMostInLeaf = 4;
 /// From this depth on nodes are halved by number, which ends within 28 further levels.
 constexpr int kHalvedFrom = 32;
 /// Subtrees of fewer triangles are built by one thread.
@@ -90,7 +88,7 @@ Cut best_cut_along(std::span<const Entry> entries, const Bounds& bounds, int axi
 }
 
 /// Parts entries in two; returns how many are in the first part, 0 where a leaf is better.
-size_t part(std::span<Entry> entries, const Bounds& bounds, int depth) {
+size_t part(std::span<Entry> entries, const Bounds& bounds, int depth, uint32_t most_in_leaf) {
   const size_t n = entries.size();
   Cut best;
   if (depth < kHalvedFrom)
@@ -99,7 +97,7 @@ size_t part(std::span<Entry> entries, const Bounds& bounds, int depth) {
       if (cut.cost < best.cost) best = cut;
     }
   const float whole = area(bounds.box);
-  if (n <= kMostInLeaf && kNodeCost * whole + best.cost >= float(n) * whole) return 0;
+  if (n <= most_in_leaf && kNodeCost * whole + best.cost >= float(n) * whole) return 0;
   if (best.axis < 0) return n / 2;
   const auto middle = std::partition(entries.begin(), entries.end(), [&](const Entry& e) {
     return bin_of(bounds.middles, e.middle(), best.axis) < best.bin;
@@ -121,8 +119,8 @@ void set_child(BinaryNode& node, uint32_t side, const Box3& box, uint32_t ref) {
 
 /// Builds what `task` stands for into `nodes`. With `later`, parts of few triangles are put there
 /// in place of being built.
-void build(std::span<Entry> all, const Task& task, std::vector<BinaryNode>& nodes,
-           std::vector<Task>* later) {
+void build(std::span<Entry> all, const Task& task, uint32_t most_in_leaf,
+           std::vector<BinaryNode>& nodes, std::vector<Task>* later) {
   std::vector<Task> todo{task};
   while (!todo.empty()) {
     const Task t = todo.back();
@@ -133,7 +131,7 @@ void build(std::span<Entry> all, const Task& task, std::vector<BinaryNode>& node
     }
     const std::span<Entry> entries = all.subspan(t.first, t.count);
     const Bounds bounds = bounds_of(entries);
-    const auto left = uint32_t(part(entries, bounds, t.depth));
+    const auto left = uint32_t(part(entries, bounds, t.depth, most_in_leaf));
     if (left == 0) {
       set_child(nodes[t.node], t.side, bounds.box, ChildRef::leaf(t.first, t.count));
       continue;
@@ -181,8 +179,9 @@ std::vector<DeviceTriangle> device_triangles(const scene::Scene& scene) {
   return out;
 }
 
-BinaryHierarchy sort_into_hierarchy(std::vector<DeviceTriangle> triangles) {
+BinaryHierarchy sort_into_hierarchy(std::vector<DeviceTriangle> triangles, uint32_t most_in_leaf) {
   LUXEL_CHECK(triangles.size() < ChildRef::kFirstMask);
+  LUXEL_CHECK(most_in_leaf >= 1 && most_in_leaf <= ChildRef::kMaxCount);
   BinaryHierarchy out;
   out.nodes.emplace_back();
   const auto n = uint32_t(triangles.size());
@@ -198,12 +197,13 @@ BinaryHierarchy sort_into_hierarchy(std::vector<DeviceTriangle> triangles) {
   // The upper levels, then all that hangs on them side by side. The whole is the root's first
   // child: its second has no triangle.
   std::vector<Task> later;
-  build(entries, {0, n, 0, 0, 1}, out.nodes, &later);
+  build(entries, {0, n, 0, 0, 1}, most_in_leaf, out.nodes, &later);
   std::vector<std::vector<BinaryNode>> subtrees(later.size());
   parallel_for(later.size(), 1, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       subtrees[k].emplace_back();
-      build(entries, {later[k].first, later[k].count, 0, 0, later[k].depth}, subtrees[k], nullptr);
+      build(entries, {later[k].first, later[k].count, 0, 0, later[k].depth}, most_in_leaf,
+            subtrees[k], nullptr);
     }
   });
   for (size_t k = 0; k < later.size(); ++k) append_subtree(later[k], subtrees[k], out.nodes);

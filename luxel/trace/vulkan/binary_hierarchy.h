@@ -62,8 +62,9 @@ struct BinaryHierarchy {
   std::vector<DeviceTriangle> triangles;  ///< in the order of the leaves
 };
 
-/// Sorts triangles by the surface area heuristic over 16 bins per axis [Wald07]. At most 2^28
-/// triangles. The same bits for any number of threads.
-BinaryHierarchy sort_into_hierarchy(std::vector<DeviceTriangle> triangles);
+/// Sorts triangles by the surface area heuristic over 16 bins per axis [Wald07]. Fewer than 2^28 -
+/// 1 triangles. The same bits for any number of threads.
+BinaryHierarchy sort_into_hierarchy(std::vector<DeviceTriangle> triangles,
+                                    uint32_t most_in_leaf = 4);
 
 }  // namespace luxel::trace

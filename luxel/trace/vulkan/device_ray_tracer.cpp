@@ -9,9 +9,11 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/scene/sides.h"
-#include "luxel/trace/vulkan/binary_hierarchy.h"
-#include "luxel/trace/vulkan/shaders/closest.comp.h"
-#include "luxel/trace/vulkan/shaders/occluded.comp.h"
+#include "luxel/trace/vulkan/shaders/closest_binary.comp.h"
+#include "luxel/trace/vulkan/shaders/closest_wide.comp.h"
+#include "luxel/trace/vulkan/shaders/occluded_binary.comp.h"
+#include "luxel/trace/vulkan/shaders/occluded_wide.comp.h"
+#include "luxel/trace/vulkan/wide_hierarchy.h"
 
 namespace luxel::trace {
 namespace {
@@ -60,31 +62,50 @@ DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& 
       first_triangle_(scene::first_triangles(scene)),
       rays_per_dispatch_(kFirstDispatch) {}
 
-Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device,
-                                               const scene::Scene& scene) {
+Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
+  std::vector<DeviceTriangle> triangles = device_triangles(*scene_);
+  if (triangles.size() >= ChildRef::kFirstMask)
+    return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
+                ChildRef::kFirstMask - 1, triangles.size());
+  triangle_count_ = triangles.size();
+  constexpr std::string_view kBoxes = "the buffer of boxes around triangles";
+  std::vector<DeviceTriangle> sorted;
+  if (kind == HierarchyKind::wide) {
+    WideHierarchy wide = widen(sort_into_hierarchy(std::move(triangles), WideNode::kMostInLeaf));
+    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, wide.nodes, kBoxes));
+    sorted = std::move(wide.triangles);
+  } else {
+    BinaryHierarchy binary = sort_into_hierarchy(std::move(triangles));
+    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, binary.nodes, kBoxes));
+    sorted = std::move(binary.triangles);
+  }
+  if (sorted.empty()) sorted.emplace_back();  // a buffer is never empty
+  LUXEL_TRY(triangles_, device_buffer(*device_, commands_, sorted, "the buffer of triangles"));
+  return {};
+}
+
+Status DeviceRayTracer::make_pipelines(HierarchyKind kind) {
+  const bool wide = kind == HierarchyKind::wide;
+  const auto make = [&](gpu::Spirv shader) {
+    return gpu::make_compute_pipeline(*device_, shader, {sizeof(TracePush), {}});
+  };
+  LUXEL_TRY(closest_, make(wide ? gpu::Spirv(closest_wide_comp) : gpu::Spirv(closest_binary_comp)));
+  LUXEL_TRY(occluded_,
+            make(wide ? gpu::Spirv(occluded_wide_comp) : gpu::Spirv(occluded_binary_comp)));
+  return {};
+}
+
+Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device, const scene::Scene& scene,
+                                               HierarchyKind kind) {
   if (const scene::Material* open = see_through(scene))
     return fail(ErrorCode::unsupported,
                 "{}: rays on the device know no surface that lets light through, as material '{}' "
                 "does; trace them on the processor",
                 device.name, open->name);
-  std::vector<DeviceTriangle> triangles = device_triangles(scene);
-  if (triangles.size() >= ChildRef::kFirstMask)
-    return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
-                ChildRef::kFirstMask - 1, triangles.size());
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   DeviceRayTracer out(device, scene, std::move(commands));
-  out.triangle_count_ = triangles.size();
-  BinaryHierarchy hierarchy = sort_into_hierarchy(std::move(triangles));
-  if (hierarchy.triangles.empty()) hierarchy.triangles.emplace_back();  // a buffer is never empty
-  LUXEL_TRY(out.nodes_, device_buffer(device, out.commands_, hierarchy.nodes,
-                                      "the buffer of boxes around triangles"));
-  LUXEL_TRY(out.triangles_,
-            device_buffer(device, out.commands_, hierarchy.triangles, "the buffer of triangles"));
-  const gpu::Interface interface {
-    sizeof(TracePush), {}
-  };
-  LUXEL_TRY(out.closest_, gpu::make_compute_pipeline(device, closest_comp, interface));
-  LUXEL_TRY(out.occluded_, gpu::make_compute_pipeline(device, occluded_comp, interface));
+  LUXEL_TRY_STATUS(out.upload_hierarchy(kind));
+  LUXEL_TRY_STATUS(out.make_pipelines(kind));
   return out;
 }
 

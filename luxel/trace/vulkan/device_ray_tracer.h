@@ -26,6 +26,10 @@ struct DeviceHit {
 };
 static_assert(sizeof(DeviceHit) == 16 && sizeof(Ray) == 32);
 
+/// How triangles are sorted: two children a node with boxes of floats, or eight with boxes of
+/// bytes.
+enum class HierarchyKind : uint8_t { binary, wide };
+
 /// Rays and triangles in a device's memory. It answers as RayTracer does, up to rounding: rays that
 /// graze an edge may meet its other side, and of surfaces that coincide either may be met. Surfaces
 /// all block: of masks and of what light goes through it knows nothing. `device` and `scene` are
@@ -34,7 +38,8 @@ class DeviceRayTracer {
  public:
   /// Errors: a surface that lets light through (ErrorCode::unsupported), 2^28 triangles or more, no
   /// memory, the device is lost.
-  static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene);
+  static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
+                                       HierarchyKind kind = HierarchyKind::wide);
 
   /// hits[i] is what rays[i] meets first. Sizes are equal. They go to the device and back in parts
   /// of at most kRaysAtATime. Errors: no memory, the device is lost.
@@ -54,6 +59,8 @@ class DeviceRayTracer {
 
  private:
   DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene, gpu::Commands commands);
+  Status upload_hierarchy(HierarchyKind kind);
+  Status make_pipelines(HierarchyKind kind);
   Result<double> dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays, VkDeviceAddress out,
                           size_t count);
   Status make_room(size_t count);

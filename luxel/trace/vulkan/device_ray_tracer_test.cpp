@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class DeviceRays : public ::testing::Test {
+class DeviceRays : public ::testing::TestWithParam<HierarchyKind> {
  protected:
   void SetUp() override {
     gpu::DeviceParams params;
@@ -30,7 +30,7 @@ class DeviceRays : public ::testing::Test {
   }
 
   DeviceRayTracer built(const scene::Scene& scene) {
-    auto tracer = DeviceRayTracer::build(*device_, scene);
+    auto tracer = DeviceRayTracer::build(*device_, scene, GetParam());
     EXPECT_TRUE(tracer) << tracer.error().message;
     return std::move(*tracer);
   }
@@ -82,7 +82,7 @@ scene::Scene quad_scene(Mat34 world_from_object) {
 // Rays that graze an edge may meet either side of it, and those that begin on a surface may meet it
 // or not: one in a thousand at most. All others meet the same triangle at the same place, up to
 // some roundings.
-TEST_F(DeviceRays, MeetWhatTheProcessorsMeet) {
+TEST_P(DeviceRays, MeetWhatTheProcessorsMeet) {
   for (const char* file : {"cornell-box.glb", "office.glb", "spheres-and-cube.glb"}) {
     const scene::Scene scene = scene_named(file);
     const std::vector<Ray> rays = rays_within(scene, 20000);
@@ -115,7 +115,7 @@ TEST_F(DeviceRays, MeetWhatTheProcessorsMeet) {
 
 // A closed sphere around the origin: no ray slips out between two triangles, also exactly through
 // corners and edges.
-TEST_F(DeviceRays, DoNotSlipThroughAClosedSurface) {
+TEST_P(DeviceRays, DoNotSlipThroughAClosedSurface) {
   const scene::Scene scene = scene::inward_sphere(1, 4, {0.5f, 0.5f, 0.5f}, {});
   const scene::Mesh& mesh = scene.meshes[0];
   std::vector<Ray> rays;
@@ -133,7 +133,7 @@ TEST_F(DeviceRays, DoNotSlipThroughAClosedSurface) {
 
 // Of a quad that stands mirrored, of a sheet with two sides, and of ends of rays, as RayTracer's
 // own tests have it.
-TEST_F(DeviceRays, KnowSidesAndEnds) {
+TEST_P(DeviceRays, KnowSidesAndEnds) {
   for (const float side : {1.0f, -1.0f}) {
     scene::Scene scene = quad_scene(scaling({side, 1, 1}));
     for (const bool two_sided : {false, true}) {
@@ -159,7 +159,7 @@ TEST_F(DeviceRays, KnowSidesAndEnds) {
   }
 }
 
-TEST_F(DeviceRays, MeetNothingWhereNothingIs) {
+TEST_P(DeviceRays, MeetNothingWhereNothingIs) {
   const scene::Scene scene;
   DeviceRayTracer tracer = built(scene);
   const std::vector<Ray> rays{{{}, 0, {0, 0, -1}, INFINITY}, {{1, 2, 3}, 0, {1, 0, 0}, 5}};
@@ -167,7 +167,7 @@ TEST_F(DeviceRays, MeetNothingWhereNothingIs) {
   EXPECT_THAT(hits_of(tracer, {}), IsEmpty());
 }
 
-TEST_F(DeviceRays, AreRefusedWhereSurfacesLetLightThrough) {
+TEST_P(DeviceRays, AreRefusedWhereSurfacesLetLightThrough) {
   scene::Scene scene = quad_scene({});
   scene.materials[0].name = "pane";
   scene.materials[0].alpha_mode = scene::AlphaMode::blend;
@@ -176,6 +176,12 @@ TEST_F(DeviceRays, AreRefusedWhereSurfacesLetLightThrough) {
   ASSERT_FALSE(tracer);
   EXPECT_THAT(tracer.error().message, HasSubstr("'pane'"));
 }
+
+INSTANTIATE_TEST_SUITE_P(BothHierarchies, DeviceRays,
+                         ::testing::Values(HierarchyKind::binary, HierarchyKind::wide),
+                         [](const auto& kind) {
+                           return kind.param == HierarchyKind::wide ? "wide" : "binary";
+                         });
 
 }  // namespace
 }  // namespace luxel::trace

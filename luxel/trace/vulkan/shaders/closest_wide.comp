@@ -1,7 +1,7 @@
-// What each ray meets first.
+// What each ray meets first, by a wide hierarchy.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "hierarchy.glsl"
+#include "wide.glsl"
 layout(local_size_x = 64) in;
 
 layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };

@@ -1,13 +1,12 @@
-// Rays through a binary hierarchy: binary_hierarchy.h has the structs.
+// Rays, triangles and what rays meet of them.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 
-const uint kLeaf = 1u << 31;
 const uint kNoTriangle = 0xffffffffu;
 const uint kBackFace = 1u << 31;
 const int kMaxDepth = 64;
 
-// Four vectors a node, three a triangle, two a ray: origin and t_min, direction and t_max.
+// Three vectors a triangle (binary_hierarchy.h), two a ray: origin and t_min, direction and t_max.
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Vectors { vec4 at[]; };
 
 struct Ray {
@@ -30,15 +29,6 @@ Ray ray_at(Vectors rays, uint i) {
 vec3 reciprocal(vec3 direction) {
   vec3 tiny = mix(vec3(1e-20), vec3(-1e-20), lessThan(direction, vec3(0)));
   return 1 / mix(direction, tiny, lessThan(abs(direction), vec3(1e-20)));
-}
-
-// Where the ray is in a box, from x to y; x > y: nowhere. The far end is widened by the roundings
-// of the three steps before, so that no box of a triangle that is met is missed [Ize13].
-vec2 span_in_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse, float t_min, float t_max) {
-  vec3 a = (lower - origin) * inverse, b = (upper - origin) * inverse;
-  vec3 near = min(a, b), far = max(a, b);
-  return vec2(max(max(near.x, near.y), max(near.z, t_min)),
-              min(min(min(far.x, far.y), far.z) * 1.0000004, t_max));
 }
 
 // Twice the signed volume of the ray and the edge from p to q, both seen from the origin. Seen from
@@ -68,39 +58,4 @@ bool meets(Vectors triangles, uint k, Ray ray, inout Hit hit) {
   hit = Hit(t, clamp(u / sum, 0.0, 1.0), clamp(v / sum, 0.0, 1.0),
             floatBitsToUint(a.w) | (from_behind ? kBackFace : 0));
   return true;
-}
-
-// The first triangle along the ray; with `any`, whichever is found first.
-Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
-  Hit hit = Hit(ray.t_max, 0, 0, kNoTriangle);
-  vec3 inverse = reciprocal(ray.direction);
-  uint stack[kMaxDepth];
-  int height = 0;
-  uint ref = 0;
-  for (;;) {
-    if ((ref & kLeaf) == 0) {
-      vec4 n0 = nodes.at[4 * ref], n1 = nodes.at[4 * ref + 1], n2 = nodes.at[4 * ref + 2],
-           n3 = nodes.at[4 * ref + 3];
-      vec2 s0 = span_in_box(n0.xyz, n1.xyz, ray.origin, inverse, ray.t_min, hit.t);
-      vec2 s1 = span_in_box(n2.xyz, n3.xyz, ray.origin, inverse, ray.t_min, hit.t);
-      uint first = floatBitsToUint(n0.w), second = floatBitsToUint(n1.w);
-      bool in0 = s0.x <= s0.y, in1 = s1.x <= s1.y;
-      if (in0 && in1) {
-        bool swap = s1.x < s0.x;
-        stack[height++] = swap ? first : second;
-        ref = swap ? second : first;
-        continue;
-      }
-      if (in0 || in1) {
-        ref = in0 ? first : second;
-        continue;
-      }
-    } else {
-      uint begin = ref & 0x0fffffffu, end = begin + (ref >> 28 & 7u);
-      for (uint k = begin; k < end; ++k)
-        if (meets(triangles, k, ray, hit) && any) return hit;
-    }
-    if (height == 0) return hit;
-    ref = stack[--height];
-  }
 }

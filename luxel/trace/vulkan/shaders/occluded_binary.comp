@@ -1,0 +1,19 @@
+// Whether anything lies on each ray, by a binary hierarchy.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "binary.glsl"
+layout(local_size_x = 64) in;
+
+layout(buffer_reference, scalar) writeonly buffer Blocked { uint at[]; };
+
+layout(push_constant, scalar) uniform Push {
+  Vectors nodes, triangles, rays;
+  Blocked blocked;
+  uint first, end;  // of the rays that are traced
+};
+
+void main() {
+  uint i = first + gl_GlobalInvocationID.x;
+  if (i >= end) return;
+  blocked.at[i] = uint(trace(nodes, triangles, ray_at(rays, i), true).number != kNoTriangle);
+}

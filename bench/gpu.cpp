@@ -11,9 +11,10 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kRaysPerElement = 64, kDeviceRounds = 5;
+constexpr int kRaysPerElement = 64;
+constexpr double kWarmUpSeconds = 0.3, kMeasuredSeconds = 0.3;
 /// Rays of a scene, at most: enough for a second of a fast device, and for some of a slow one.
-constexpr size_t kMostRays = 1u << 24, kMostRaysOfProcessor = 1u << 20;
+constexpr size_t kMostRays = 1u << 24, kMostRaysOfProcessor = 1u << 17;
 /// Elements whose rays of one cell of directions follow each other.
 constexpr size_t kTogether = 64;
 
@@ -59,17 +60,18 @@ double processor_rate(const trace::RayTracer& tracer, std::span<const trace::Ray
   return double(rays.size()) / seconds_since(start);
 }
 
-/// Median of some rounds after a first, of rays that lie on the device.
+/// The median of rounds over rays that lie on the device, after others in which its clock rises.
 Result<double> device_rate(trace::DeviceRayTracer& tracer, std::span<const trace::Ray> rays) {
   LUXEL_TRY(trace::DeviceRays there, tracer.upload(rays));
-  LUXEL_TRY([[maybe_unused]] const double first, tracer.closest_hits(there));
   std::vector<double> rates;
-  for (int round = 0; round < kDeviceRounds; ++round) {
+  double spent_s = 0;
+  while (spent_s < kWarmUpSeconds + kMeasuredSeconds || rates.empty()) {
     LUXEL_TRY(const double seconds, tracer.closest_hits(there));
-    rates.push_back(double(rays.size()) / seconds);
+    if (spent_s >= kWarmUpSeconds) rates.push_back(double(rays.size()) / seconds);
+    spent_s += seconds;
   }
   std::ranges::sort(rates);
-  return rates[kDeviceRounds / 2];
+  return rates[rates.size() / 2];
 }
 
 /// The share of rays that meet another triangle, or the other side of it.

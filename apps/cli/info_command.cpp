@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "luxel/gpu/device.h"
 #include "luxel/import/import.h"
 #include "luxel/scene/scene.h"
 
@@ -11,6 +12,7 @@ struct InfoOptions {
   Common common;
   Given reading;
   std::string scene;
+  bool devices = false;
 };
 
 nlohmann::json vector_json(Vec3 v) { return {v.x, v.y, v.z}; }
@@ -47,7 +49,46 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
           {"warnings", warnings}};
 }
 
+const char* kind_of(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "graphics card";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "graphics of the processor";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual graphics card";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "software on the processor";
+    default:
+      return "other";
+  }
+}
+
+/// Without Vulkan, or without a device, the list is empty: luxel needs none.
+int run_devices(const InfoOptions& options) {
+  const auto devices = gpu::list_devices();
+  if (options.common.json) {
+    nlohmann::json json{{"devices", nlohmann::json::array()}};
+    if (!devices) json["reason"] = devices.error().message;
+    for (const gpu::DeviceInfo& d : devices.value_or(std::vector<gpu::DeviceInfo>{}))
+      json["devices"].push_back({{"name", d.name}, {"kind", kind_of(d.type)}, {"lacks", d.lacks}});
+    std::printf("%s\n", json.dump(2).c_str());
+    return kDone;
+  }
+  if (!devices) {
+    std::printf("no device: %s\n", devices.error().message.c_str());
+    return kDone;
+  }
+  for (const gpu::DeviceInfo& d : *devices)
+    std::printf("%s: %s%s%s\n", d.name.c_str(), kind_of(d.type),
+                d.lacks.empty() ? "; luxel-view draws on it, luxel bench gpu traces rays"
+                                : "; luxel cannot use it, for it lacks ",
+                d.lacks.c_str());
+  return kDone;
+}
+
 int run_info(const InfoOptions& options) {
+  if (options.devices) return run_devices(options);
   import::ImportParams reading;
   if (const Status read = read_given(options.reading, pipeline::import_options(), reading); !read)
     return report(read.error(), options.common);
@@ -67,12 +108,18 @@ int run_info(const InfoOptions& options) {
 }  // namespace
 
 void register_info(CLI::App& app, Action& action) {
-  CLI::App* info = app.add_subcommand("info", "Say what is in a scene");
+  CLI::App* info = app.add_subcommand("info", "Say what is in a scene, or which devices there are");
   auto options = std::make_shared<InfoOptions>();
-  info->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file")->required();
+  CLI::Option* scene = info->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file");
+  info->add_flag("--devices", options->devices,
+                 "List the graphics devices of this machine, and what luxel can do on them")
+      ->excludes(scene);
   add_import(*info, options->reading);
   add_common(*info, options->common);
-  info->callback([options, &action] { action = [options] { return run_info(*options); }; });
+  info->callback([options, &action] {
+    if (!options->devices && options->scene.empty()) throw CLI::RequiredError("SCENE");
+    action = [options] { return run_info(*options); };
+  });
 }
 
 }  // namespace luxel::cli

@@ -54,6 +54,10 @@ Result<gpu::Buffer> device_buffer(const gpu::Device& device, gpu::Commands& comm
 
 }  // namespace
 
+HierarchyKind faster_hierarchy(const gpu::Device& device) {
+  return device.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? HierarchyKind::wide : HierarchyKind::binary;
+}
+
 DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene,
                                  gpu::Commands commands)
     : device_(&device),

@@ -29,6 +29,9 @@ static_assert(sizeof(DeviceHit) == 16 && sizeof(Ray) == 32);
 /// How triangles are sorted: two children a node with boxes of floats, or eight with boxes of
 /// bytes.
 enum class HierarchyKind : uint8_t { binary, wide };
+/// The kind that traced rays faster where `luxel bench gpu` was run: wide on a processor that plays
+/// a device, binary on a data-centre GPU (docs/method/gpu.md).
+HierarchyKind faster_hierarchy(const gpu::Device& device);
 
 /// Rays and triangles in a device's memory. It answers as RayTracer does, up to rounding: rays that
 /// graze an edge may meet its other side, and of surfaces that coincide either may be met. Surfaces
@@ -39,7 +42,10 @@ class DeviceRayTracer {
   /// Errors: a surface that lets light through (ErrorCode::unsupported), 2^28 triangles or more, no
   /// memory, the device is lost.
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
-                                       HierarchyKind kind = HierarchyKind::wide);
+                                       HierarchyKind kind);
+  static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene) {
+    return build(device, scene, faster_hierarchy(device));
+  }
 
   /// hits[i] is what rays[i] meets first. Sizes are equal. They go to the device and back in parts
   /// of at most kRaysAtATime. Errors: no memory, the device is lost.

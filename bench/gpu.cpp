@@ -29,8 +29,8 @@ Rays rays_of(const validate::Prepared& p, size_t most) {
   const size_t groups = p.elements.size() / kTogether;
   const size_t wanted = std::min(groups, most / (kTogether * kRaysPerElement));
   Rays out;
-  out.by_element.resize(wanted * kTogether * kRaysPerElement),
-      out.sorted.resize(out.by_element.size());
+  out.by_element.resize(wanted * kTogether * kRaysPerElement);
+  out.sorted.resize(out.by_element.size());
   parallel_for(wanted, 1, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g) {
       const size_t first = g * groups / wanted * kTogether;
@@ -83,12 +83,24 @@ double share_of_others(std::span<const trace::Hit> a, std::span<const trace::Hit
   return double(others) / double(std::max<size_t>(a.size(), 1));
 }
 
+/// The share of rays that end elsewhere, by more than rounding: what is left of those that meet
+/// another triangle where surfaces do not coincide.
+double share_of_other_places(std::span<const trace::Hit> a, std::span<const trace::Hit> b) {
+  constexpr float kRounding = 1e-4f;
+  size_t others = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    others += a[i].found() != b[i].found() ||
+              (a[i].found() && std::abs(a[i].t - b[i].t) > kRounding * (1 + a[i].t));
+  return double(others) / double(std::max<size_t>(a.size(), 1));
+}
+
 /// What one kind of hierarchy makes of a scene's rays.
 struct DeviceRates {
   size_t triangles = 0;
   double built_s = 0;
   double by_element = 0, sorted = 0;  ///< rays per second
   double others = 0;                  ///< share of rays that meet another triangle
+  double elsewhere = 0;               ///< share of rays that end at another place
 };
 
 Result<DeviceRates> rates_on_device(const gpu::Device& device, const scene::Scene& scene,
@@ -103,6 +115,7 @@ Result<DeviceRates> rates_on_device(const gpu::Device& device, const scene::Scen
   std::vector<trace::Hit> hits(rays.sorted.size());
   LUXEL_TRY_STATUS(tracer.closest_hits(rays.sorted, hits));
   out.others = share_of_others(expected, hits);
+  out.elsewhere = share_of_other_places(expected, hits);
   return out;
 }
 
@@ -115,6 +128,7 @@ void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, d
                         fmt::format("{:.1f}", on_device.by_element * 1e-6),
                         fmt::format("{:.1f}", on_device.sorted * 1e-6),
                         fmt::format("{:.4f}", 100 * on_device.others),
+                        fmt::format("{:.5f}", 100 * on_device.elsewhere),
                         fmt::format("{:.0f}", on_device.built_s * 1e3)});
   table.json.push_back({{"scene", scene},
                         {"triangles", on_device.triangles},
@@ -124,6 +138,7 @@ void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, d
                         {"device_mrays_per_s", on_device.by_element * 1e-6},
                         {"device_sorted_mrays_per_s", on_device.sorted * 1e-6},
                         {"share_of_other_triangles", on_device.others},
+                        {"share_of_other_places", on_device.elsewhere},
                         {"build_s", on_device.built_s}});
 }
 
@@ -150,9 +165,10 @@ Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::De
 
 Result<Table> measure_gpu(const std::filesystem::path& shared, int threads) {
   const ThreadLimit limit(threads);
-  Table table = new_table("gpu", {"scene", "triangles", "rays [millions]", "processor, Mrays/s",
-                                  "hierarchy", "device, Mrays/s", "device, rays sorted, Mrays/s",
-                                  "rays that meet another triangle [%]", "built in [ms]"});
+  Table table = new_table(
+      "gpu", {"scene", "triangles", "rays [millions]", "processor, Mrays/s", "hierarchy",
+              "device, Mrays/s", "device, rays sorted, Mrays/s",
+              "rays that meet another triangle [%]", "another place [%]", "built in [ms]"});
   LUXEL_TRY(const auto device, gpu::Device::open({}));
   table.notes.push_back("device: " + device->name);
   for (const NamedScene& named : scenes_of_rays(shared)) {

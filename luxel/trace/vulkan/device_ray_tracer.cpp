@@ -178,39 +178,38 @@ Hit hit_of(const scene::Scene& scene, std::span<const uint32_t> first_triangle,
 
 }  // namespace
 
-Status DeviceRayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) {
-  LUXEL_CHECK(rays.size() == hits.size());
+Status DeviceRayTracer::trace_parts(const gpu::Pipeline& pipeline, size_t bytes_per_answer,
+                                    std::span<const Ray> rays, const AtPart& at_part) {
   for (size_t first = 0; first < rays.size(); first += kRaysAtATime) {
     const size_t count = std::min(kRaysAtATime, rays.size() - first);
     LUXEL_TRY_STATUS(make_room(count));
     std::memcpy(sent_.mapped, rays.data() + first, count * sizeof(Ray));
     LUXEL_TRY_STATUS(copy(sent_, room_.rays, count * sizeof(Ray)));
     LUXEL_TRY([[maybe_unused]] const double seconds,
-              dispatch(closest_, room_.rays.address, room_.hits.address, count));
-    LUXEL_TRY_STATUS(copy(room_.hits, answered_, count * sizeof(DeviceHit)));
+              dispatch(pipeline, room_.rays.address, room_.hits.address, count));
+    LUXEL_TRY_STATUS(copy(room_.hits, answered_, count * bytes_per_answer));
+    at_part(first, count);
+  }
+  return {};
+}
+
+Status DeviceRayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) {
+  LUXEL_CHECK(rays.size() == hits.size());
+  return trace_parts(closest_, sizeof(DeviceHit), rays, [&](size_t first, size_t count) {
     const auto* met = reinterpret_cast<const DeviceHit*>(answered_.mapped);
     parallel_for(count, 4096, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         hits[first + i] = hit_of(*scene_, first_triangle_, met[i]);
     });
-  }
-  return {};
+  });
 }
 
 Status DeviceRayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) {
   LUXEL_CHECK(rays.size() == blocked.size());
-  for (size_t first = 0; first < rays.size(); first += kRaysAtATime) {
-    const size_t count = std::min(kRaysAtATime, rays.size() - first);
-    LUXEL_TRY_STATUS(make_room(count));
-    std::memcpy(sent_.mapped, rays.data() + first, count * sizeof(Ray));
-    LUXEL_TRY_STATUS(copy(sent_, room_.rays, count * sizeof(Ray)));
-    LUXEL_TRY([[maybe_unused]] const double seconds,
-              dispatch(occluded_, room_.rays.address, room_.hits.address, count));
-    LUXEL_TRY_STATUS(copy(room_.hits, answered_, count * sizeof(uint32_t)));
+  return trace_parts(occluded_, sizeof(uint32_t), rays, [&](size_t first, size_t count) {
     const auto* is_blocked = reinterpret_cast<const uint32_t*>(answered_.mapped);
     for (size_t i = 0; i < count; ++i) blocked[first + i] = is_blocked[i] != 0;
-  }
-  return {};
+  });
 }
 
 Result<DeviceRays> DeviceRayTracer::upload(std::span<const Ray> rays) {

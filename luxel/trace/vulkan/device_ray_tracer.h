@@ -1,6 +1,7 @@
 // What rays meet, found by a graphics device.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "luxel/gpu/buffer.h"
@@ -69,6 +70,10 @@ class DeviceRayTracer {
   Status make_pipelines(HierarchyKind kind);
   Result<double> dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays, VkDeviceAddress out,
                           size_t count);
+  /// Sends rays there part by part; the answers of [first, first + count) then lie in answered_.
+  using AtPart = std::function<void(size_t first, size_t count)>;
+  Status trace_parts(const gpu::Pipeline& pipeline, size_t bytes_per_answer,
+                     std::span<const Ray> rays, const AtPart& at_part);
   Status make_room(size_t count);
   Status copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes);
 

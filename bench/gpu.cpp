@@ -144,9 +144,6 @@ void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, d
 
 Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::Device& device,
                      Table& table) {
-  // All surfaces block: rays on the device know no others yet, and both sides trace the same.
-  for (scene::Material& m : loaded.materials)
-    m.alpha_mode = scene::AlphaMode::opaque, m.transmission = 0;
   Progress layout;
   LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), 512, layout));
   const bool is_processor = device.type == VK_PHYSICAL_DEVICE_TYPE_CPU;

@@ -19,7 +19,7 @@ struct DeviceTriangle {
   uint32_t mirrored =
       0;  ///< 1: its instance mirrors, so that the front is where a, b, c turn right
   Vec3 c;
-  uint32_t unused = 0;
+  uint32_t see_through = 0;  ///< number in SeeThrough::triangles, counted from 1; 0: it blocks
 };
 static_assert(sizeof(DeviceTriangle) == 48);
 

@@ -9,6 +9,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/scene/sides.h"
+#include "luxel/trace/vulkan/see_through.h"
 #include "luxel/trace/vulkan/shaders/closest_binary.comp.h"
 #include "luxel/trace/vulkan/shaders/closest_wide.comp.h"
 #include "luxel/trace/vulkan/shaders/occluded_binary.comp.h"
@@ -27,21 +28,15 @@ constexpr double kDispatchSeconds = 0.02;
 constexpr double kMostGrowth = 4;
 
 struct TracePush {
-  VkDeviceAddress nodes, triangles, rays, out;
+  VkDeviceAddress nodes, triangles, open_materials, open_triangles, open_texels, rays, out;
   uint32_t first, end;
 };
 
-/// The first surface that lets some light through; kNone: all block.
-const scene::Material* see_through(const scene::Scene& scene) {
-  for (const scene::Instance& instance : scene.instances)
-    for (const uint32_t m : scene.meshes[instance.mesh].triangle_material)
-      if (scene::lets_light_through(scene.materials[m])) return &scene.materials[m];
-  return nullptr;
-}
-
+/// At least one value: a buffer is never empty.
 template <class T>
 Result<gpu::Buffer> device_buffer(const gpu::Device& device, gpu::Commands& commands,
-                                  const std::vector<T>& values, std::string_view what) {
+                                  std::vector<T> values, std::string_view what) {
+  if (values.empty()) values.emplace_back();
   const auto bytes = std::as_bytes(std::span(values));
   LUXEL_TRY(const gpu::Buffer sent, gpu::buffer_with(device, bytes, what));
   LUXEL_TRY(gpu::Buffer out, gpu::make_buffer(device, bytes.size(), gpu::Access::device, what));
@@ -72,19 +67,24 @@ Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
     return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
                 ChildRef::kFirstMask - 1, triangles.size());
   triangle_count_ = triangles.size();
+  constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
+  SeeThrough open = find_see_through(*scene_, triangles);
+  LUXEL_TRY(open_materials_, device_buffer(*device_, commands_, std::move(open.materials), kOpen));
+  LUXEL_TRY(open_triangles_, device_buffer(*device_, commands_, std::move(open.triangles), kOpen));
+  LUXEL_TRY(open_texels_, device_buffer(*device_, commands_, std::move(open.texels), kOpen));
   constexpr std::string_view kBoxes = "the buffer of boxes around triangles";
   std::vector<DeviceTriangle> sorted;
   if (kind == HierarchyKind::wide) {
     WideHierarchy wide = widen(sort_into_hierarchy(std::move(triangles), WideNode::kMostInLeaf));
-    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, wide.nodes, kBoxes));
+    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, std::move(wide.nodes), kBoxes));
     sorted = std::move(wide.triangles);
   } else {
     BinaryHierarchy binary = sort_into_hierarchy(std::move(triangles));
-    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, binary.nodes, kBoxes));
+    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, std::move(binary.nodes), kBoxes));
     sorted = std::move(binary.triangles);
   }
-  if (sorted.empty()) sorted.emplace_back();  // a buffer is never empty
-  LUXEL_TRY(triangles_, device_buffer(*device_, commands_, sorted, "the buffer of triangles"));
+  LUXEL_TRY(triangles_,
+            device_buffer(*device_, commands_, std::move(sorted), "the buffer of triangles"));
   return {};
 }
 
@@ -101,11 +101,6 @@ Status DeviceRayTracer::make_pipelines(HierarchyKind kind) {
 
 Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device, const scene::Scene& scene,
                                                HierarchyKind kind) {
-  if (const scene::Material* open = see_through(scene))
-    return fail(ErrorCode::unsupported,
-                "{}: rays on the device know no surface that lets light through, as material '{}' "
-                "does; trace them on the processor",
-                device.name, open->name);
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   DeviceRayTracer out(device, scene, std::move(commands));
   LUXEL_TRY_STATUS(out.upload_hierarchy(kind));
@@ -119,8 +114,15 @@ Result<double> DeviceRayTracer::dispatch(const gpu::Pipeline& pipeline, VkDevice
   double seconds = 0;
   for (size_t first = 0; first < count;) {
     const size_t some = std::min(rays_per_dispatch_, count - first);
-    const TracePush push{nodes_.address,  triangles_.address,    rays, out,
-                         uint32_t(first), uint32_t(first + some)};
+    const TracePush push{nodes_.address,
+                         triangles_.address,
+                         open_materials_.address,
+                         open_triangles_.address,
+                         open_texels_.address,
+                         rays,
+                         out,
+                         uint32_t(first),
+                         uint32_t(first + some)};
     const auto start = Clock::now();
     LUXEL_TRY_STATUS(commands_.run([&](VkCommandBuffer c) {
       gpu::bind(*device_, c, pipeline, push);

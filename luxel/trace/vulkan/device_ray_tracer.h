@@ -36,12 +36,11 @@ HierarchyKind faster_hierarchy(const gpu::Device& device);
 
 /// Rays and triangles in a device's memory. It answers as RayTracer does, up to rounding: rays that
 /// graze an edge may meet its other side, and of surfaces that coincide either may be met. Surfaces
-/// all block: of masks and of what light goes through it knows nothing. `device` and `scene` are
-/// kept by reference and must outlive it. One thread at a time uses it.
+/// let light through by chance as they do there: the same ray has the same luck. It knows no tints.
+/// `device` and `scene` are kept by reference and must outlive it. One thread at a time uses it.
 class DeviceRayTracer {
  public:
-  /// Errors: a surface that lets light through (ErrorCode::unsupported), 2^28 triangles or more, no
-  /// memory, the device is lost.
+  /// Errors: 2^28 - 1 triangles or more (ErrorCode::unsupported), no memory, the device is lost.
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
                                        HierarchyKind kind);
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene) {
@@ -83,6 +82,7 @@ class DeviceRayTracer {
   std::vector<uint32_t> first_triangle_;
   size_t triangle_count_ = 0;
   gpu::Buffer nodes_, triangles_;
+  gpu::Buffer open_materials_, open_triangles_, open_texels_;  ///< SeeThrough
   gpu::Pipeline closest_, occluded_;
   size_t rays_per_dispatch_;
   // Where rays from the processor and their answers stop on their way.

@@ -13,7 +13,7 @@ vec2 span_in_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse, float t_min,
 }
 
 // The first triangle along the ray; with `any`, whichever is found first.
-Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
+Hit trace(World world, Ray ray, bool any) {
   Hit hit = Hit(ray.t_max, 0, 0, kNoTriangle);
   vec3 inverse = reciprocal(ray.direction);
   uint stack[kMaxDepth];
@@ -21,8 +21,8 @@ Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
   uint ref = 0;
   for (;;) {
     if ((ref & kLeaf) == 0) {
-      vec4 n0 = nodes.at[4 * ref], n1 = nodes.at[4 * ref + 1], n2 = nodes.at[4 * ref + 2],
-           n3 = nodes.at[4 * ref + 3];
+      vec4 n0 = world.nodes.at[4 * ref], n1 = world.nodes.at[4 * ref + 1], n2 = world.nodes.at[4 * ref + 2],
+           n3 = world.nodes.at[4 * ref + 3];
       vec2 s0 = span_in_box(n0.xyz, n1.xyz, ray.origin, inverse, ray.t_min, hit.t);
       vec2 s1 = span_in_box(n2.xyz, n3.xyz, ray.origin, inverse, ray.t_min, hit.t);
       uint first = floatBitsToUint(n0.w), second = floatBitsToUint(n1.w);
@@ -40,7 +40,7 @@ Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
     } else {
       uint begin = ref & 0x0fffffffu, end = begin + (ref >> 28 & 7u);
       for (uint k = begin; k < end; ++k)
-        if (meets(triangles, k, ray, hit) && any) return hit;
+        if (meets(world, k, ray, hit) && any) return hit;
     }
     if (height == 0) return hit;
     ref = stack[--height];

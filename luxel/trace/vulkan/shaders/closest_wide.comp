@@ -7,7 +7,8 @@ layout(local_size_x = 64) in;
 layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };
 
 layout(push_constant, scalar) uniform Push {
-  Vectors nodes, triangles, rays;
+  World world;
+  Vectors rays;
   Hits hits;
   uint first, end;  // of the rays that are traced
 };
@@ -15,5 +16,5 @@ layout(push_constant, scalar) uniform Push {
 void main() {
   uint i = first + gl_GlobalInvocationID.x;
   if (i >= end) return;
-  hits.at[i] = trace(nodes, triangles, ray_at(rays, i), false);
+  hits.at[i] = trace(world, ray_at(rays, i), false);
 }

@@ -7,7 +7,8 @@ layout(local_size_x = 64) in;
 layout(buffer_reference, scalar) writeonly buffer Blocked { uint at[]; };
 
 layout(push_constant, scalar) uniform Push {
-  Vectors nodes, triangles, rays;
+  World world;
+  Vectors rays;
   Blocked blocked;
   uint first, end;  // of the rays that are traced
 };
@@ -15,5 +16,5 @@ layout(push_constant, scalar) uniform Push {
 void main() {
   uint i = first + gl_GlobalInvocationID.x;
   if (i >= end) return;
-  blocked.at[i] = uint(trace(nodes, triangles, ray_at(rays, i), true).number != kNoTriangle);
+  blocked.at[i] = uint(trace(world, ray_at(rays, i), true).number != kNoTriangle);
 }

@@ -1,6 +1,6 @@
 // Rays, triangles and what rays meet of them.
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "see_through.glsl"
 
 const uint kNoTriangle = 0xffffffffu;
 const uint kBackFace = 1u << 31;
@@ -8,6 +8,12 @@ const int kMaxDepth = 64;
 
 // Three vectors a triangle (binary_hierarchy.h), two a ray: origin and t_min, direction and t_max.
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Vectors { vec4 at[]; };
+
+// What rays are traced through.
+struct World {
+  Vectors nodes, triangles;
+  SeeThrough see_through;
+};
 
 struct Ray {
   vec3 origin, direction;
@@ -43,8 +49,9 @@ precise float side_of_edge(vec3 p, vec3 q, vec3 direction) {
 }
 
 // Puts what the ray meets of a triangle into `hit` if that lies before hit.t, and says so.
-bool meets(Vectors triangles, uint k, Ray ray, inout Hit hit) {
-  vec4 a = triangles.at[3 * k], b = triangles.at[3 * k + 1], c = triangles.at[3 * k + 2];
+bool meets(World world, uint k, Ray ray, inout Hit hit) {
+  vec4 a = world.triangles.at[3 * k], b = world.triangles.at[3 * k + 1],
+       c = world.triangles.at[3 * k + 2];
   vec3 p = a.xyz - ray.origin, q = b.xyz - ray.origin, r = c.xyz - ray.origin;
   float u = side_of_edge(p, r, ray.direction), v = side_of_edge(q, p, ray.direction),
         w = side_of_edge(r, q, ray.direction);
@@ -55,7 +62,10 @@ bool meets(Vectors triangles, uint k, Ray ray, inout Hit hit) {
   float t = dot(normal, p) / slope;
   if (slope == 0 || sum == 0 || !(t >= ray.t_min && t <= hit.t)) return false;
   bool from_behind = (slope > 0) != (floatBitsToUint(b.w) != 0);
-  hit = Hit(t, clamp(u / sum, 0.0, 1.0), clamp(v / sum, 0.0, 1.0),
-            floatBitsToUint(a.w) | (from_behind ? kBackFace : 0));
+  vec2 uv = clamp(vec2(u, v) / sum, 0.0, 1.0);
+  uint open = floatBitsToUint(c.w);
+  if (open != 0 && lets_through(world.see_through, open - 1, uv, ray.origin, ray.direction))
+    return false;
+  hit = Hit(t, uv.x, uv.y, floatBitsToUint(a.w) | (from_behind ? kBackFace : 0));
   return true;
 }

@@ -53,7 +53,7 @@ Meeting meet(Vectors nodes, uint index, vec3 origin, vec3 inverse, uint flip, fl
 }
 
 // The first triangle along the ray; with `any`, whichever is found first.
-Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
+Hit trace(World world, Ray ray, bool any) {
   Hit hit = Hit(ray.t_max, 0, 0, kNoTriangle);
   vec3 inverse = reciprocal(ray.direction);
   // A ray towards +x meets the slots without bit 2 first, and so on.
@@ -61,12 +61,12 @@ Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
   uint flip = slot_flip * 0x01010101u;
   Group stack[kMaxDepth];
   int height = 0;
-  Meeting now = meet(nodes, 0, ray.origin, inverse, flip, ray.t_min, hit.t);
+  Meeting now = meet(world.nodes, 0, ray.origin, inverse, flip, ray.t_min, hit.t);
   for (;;) {
     while (now.triangles.bits != 0) {
       int k = findMSB(now.triangles.bits);
       now.triangles.bits &= ~(1u << k);
-      if (meets(triangles, now.triangles.first + uint(k), ray, hit) && any) return hit;
+      if (meets(world, now.triangles.first + uint(k), ray, hit) && any) return hit;
     }
     if (now.nodes.bits <= 0x00ffffffu) {
       if (height == 0) return hit;
@@ -78,6 +78,6 @@ Hit trace(Vectors nodes, Vectors triangles, Ray ray, bool any) {
     if (now.nodes.bits > 0x00ffffffu) stack[height++] = now.nodes;
     uint slot = (uint(k) - 24u) ^ slot_flip;
     uint before = bitCount(inner & ~(0xffffffffu << slot));
-    now = meet(nodes, now.nodes.first + before, ray.origin, inverse, flip, ray.t_min, hit.t);
+    now = meet(world.nodes, now.nodes.first + before, ray.origin, inverse, flip, ray.t_min, hit.t);
   }
 }

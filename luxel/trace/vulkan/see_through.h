@@ -1,0 +1,44 @@
+// What devices know of surfaces that let light through: masks, blended and transmissive ones.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "luxel/base/vec.h"
+#include "luxel/trace/vulkan/binary_hierarchy.h"
+
+namespace luxel::trace {
+
+/// A texture in SeeThrough::texels, and how it is looked up.
+struct DevicePicture {
+  uint32_t first = 0;
+  uint32_t width = 0, height = 0;   ///< 0: none, which is 1 everywhere
+  uint32_t wrap_u = 0, wrap_v = 0;  ///< scene::Wrap
+  uint32_t nearest = 0;             ///< 1: not filtered
+};
+
+/// scene::Material without what rays do not notice.
+struct SeeThroughMaterial {
+  uint32_t mode = 0;  ///< scene::AlphaMode
+  float alpha = 1, cutoff = 0.5f, transmission = 0, metallic = 0;
+  DevicePicture base, metal, glass;
+};
+
+/// A triangle of such a material. Places in its pictures are already transformed.
+struct SeeThroughTriangle {
+  uint32_t instance = 0, triangle = 0;
+  uint32_t material = 0;  ///< into SeeThrough::materials
+  std::array<Vec2, 3> base, metal, glass;
+};
+
+struct SeeThrough {
+  std::vector<SeeThroughMaterial> materials;
+  std::vector<SeeThroughTriangle> triangles;
+  std::vector<uint32_t> texels;  ///< RGBA, red in the lowest byte
+};
+
+/// Notes in each triangle that lets light through where it is found: DeviceTriangle::see_through.
+SeeThrough find_see_through(const scene::Scene& scene, std::vector<DeviceTriangle>& triangles);
+
+}  // namespace luxel::trace

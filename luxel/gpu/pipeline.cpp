@@ -34,6 +34,12 @@ std::vector<VkSpecializationMapEntry> entries_of(const std::vector<uint32_t>& co
   return out;
 }
 
+VkSpecializationInfo specialization(const std::vector<VkSpecializationMapEntry>& entries,
+                                    const std::vector<uint32_t>& constants) {
+  return {uint32_t(entries.size()), entries.data(), constants.size() * sizeof(uint32_t),
+          constants.data()};
+}
+
 /// All but the pipeline itself.
 Result<Pipeline> with_layout(const Device& device, const Interface& interface,
                              VkShaderStageFlags stages) {
@@ -68,12 +74,16 @@ Result<Pipeline> with_layout(const Device& device, const Interface& interface,
 }  // namespace
 
 Result<Pipeline> make_compute_pipeline(const Device& device, Spirv shader,
-                                       const Interface& interface) {
+                                       const Interface& interface,
+                                       const std::vector<uint32_t>& constants) {
   LUXEL_TRY(Pipeline out, with_layout(device, interface, VK_SHADER_STAGE_COMPUTE_BIT));
   LUXEL_TRY(const OwnedShader compute, make_shader(device, shader));
   auto info =
       structure<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
   info.stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, compute);
+  const std::vector<VkSpecializationMapEntry> entries = entries_of(constants);
+  const VkSpecializationInfo values = specialization(entries, constants);
+  info.stage.pSpecializationInfo = &values;
   info.layout = out.layout.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateComputePipelines(device.device, VK_NULL_HANDLE, 1, &info,
@@ -95,9 +105,7 @@ Result<Pipeline> make_draw_pipeline(const Device& device, const DrawParams& para
     stages.push_back(stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, fragment));
   }
   const std::vector<VkSpecializationMapEntry> entries = entries_of(params.constants);
-  const VkSpecializationInfo constants{uint32_t(entries.size()), entries.data(),
-                                       params.constants.size() * sizeof(uint32_t),
-                                       params.constants.data()};
+  const VkSpecializationInfo constants = specialization(entries, params.constants);
   for (VkPipelineShaderStageCreateInfo& stage : stages) stage.pSpecializationInfo = &constants;
   const auto nothing_bound = structure<VkPipelineVertexInputStateCreateInfo>(
       VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);

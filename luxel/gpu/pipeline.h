@@ -26,9 +26,11 @@ struct Pipeline {
   Interface interface;
 };
 
-/// Errors: the driver does not take the shader.
+/// `constants`: what constant_id 0, 1, ... are in the shader, 32 bits each. Errors: the driver does
+/// not take the shader.
 Result<Pipeline> make_compute_pipeline(const Device& device, Spirv shader,
-                                       const Interface& interface);
+                                       const Interface& interface,
+                                       const std::vector<uint32_t>& constants = {});
 
 /// How triangles or lines become pixels. Vertices are read from buffers, not bound.
 struct DrawParams {

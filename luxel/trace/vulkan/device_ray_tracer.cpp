@@ -69,6 +69,7 @@ Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
   triangle_count_ = triangles.size();
   constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
   SeeThrough open = find_see_through(*scene_, triangles);
+  lets_light_through_ = !open.triangles.empty();
   LUXEL_TRY(open_materials_, device_buffer(*device_, commands_, std::move(open.materials), kOpen));
   LUXEL_TRY(open_triangles_, device_buffer(*device_, commands_, std::move(open.triangles), kOpen));
   LUXEL_TRY(open_texels_, device_buffer(*device_, commands_, std::move(open.texels), kOpen));
@@ -91,7 +92,8 @@ Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
 Status DeviceRayTracer::make_pipelines(HierarchyKind kind) {
   const bool wide = kind == HierarchyKind::wide;
   const auto make = [&](gpu::Spirv shader) {
-    return gpu::make_compute_pipeline(*device_, shader, {sizeof(TracePush), {}});
+    return gpu::make_compute_pipeline(*device_, shader, {sizeof(TracePush), {}},
+                                      {uint32_t(lets_light_through_)});
   };
   LUXEL_TRY(closest_, make(wide ? gpu::Spirv(closest_wide_comp) : gpu::Spirv(closest_binary_comp)));
   LUXEL_TRY(occluded_,

@@ -81,6 +81,7 @@ class DeviceRayTracer {
   gpu::Commands commands_;
   std::vector<uint32_t> first_triangle_;
   size_t triangle_count_ = 0;
+  bool lets_light_through_ = false;  ///< whether some triangle does: shaders without are faster
   gpu::Buffer nodes_, triangles_;
   gpu::Buffer open_materials_, open_triangles_, open_texels_;  ///< SeeThrough
   gpu::Pipeline closest_, occluded_;

@@ -2,6 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "see_through.glsl"
 
+layout(constant_id = 0) const bool kSomeLetLightThrough = true;
+
 const uint kNoTriangle = 0xffffffffu;
 const uint kBackFace = 1u << 31;
 const int kMaxDepth = 64;
@@ -64,7 +66,8 @@ bool meets(World world, uint k, Ray ray, inout Hit hit) {
   bool from_behind = (slope > 0) != (floatBitsToUint(b.w) != 0);
   vec2 uv = clamp(vec2(u, v) / sum, 0.0, 1.0);
   uint open = floatBitsToUint(c.w);
-  if (open != 0 && lets_through(world.see_through, open - 1, uv, ray.origin, ray.direction))
+  if (kSomeLetLightThrough && open != 0 &&
+      lets_through(world.see_through, open - 1, uv, ray.origin, ray.direction))
     return false;
   hit = Hit(t, uv.x, uv.y, floatBitsToUint(a.w) | (from_behind ? kBackFace : 0));
   return true;

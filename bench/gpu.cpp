@@ -5,7 +5,7 @@
 #include "bench/scenes_of_rays.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
-#include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/solve/device/first_hits.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
 
 namespace luxel::bench {
@@ -17,6 +17,10 @@ constexpr double kWarmUpSeconds = 0.3, kMeasuredSeconds = 0.3;
 constexpr size_t kMostRays = 1u << 24, kMostRaysOfProcessor = 1u << 17;
 /// Elements whose rays of one cell of directions follow each other.
 constexpr size_t kTogether = 64;
+
+size_t most_rays(const gpu::Device& device) {
+  return device.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? kMostRaysOfProcessor : kMostRays;
+}
 
 /// Gather's rays of groups of neighbouring elements, spread over the map.
 struct Rays {
@@ -94,24 +98,49 @@ double share_of_other_places(std::span<const trace::Hit> a, std::span<const trac
   return double(others) / double(std::max<size_t>(a.size(), 1));
 }
 
+/// The rate of gather's rays of all elements, made and traced on the device.
+Result<double> made_rate(const trace::DeviceRayTracer& tracer, const validate::Prepared& p,
+                         size_t most) {
+  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(tracer.device()));
+  const size_t fit = std::max<size_t>(kTogether, most / kRaysPerElement);
+  transport::Elements some = p.elements;
+  for (auto* values : {&some.position, &some.normal, &some.geometric_normal})
+    values->resize(std::min(values->size(), fit));
+  some.reflectance.clear();
+  const float diagonal_m = scene::world_bounds(p.scene).diagonal();
+  std::vector<double> rates;
+  double spent_s = 0;
+  while (spent_s < kWarmUpSeconds + kMeasuredSeconds || rates.empty()) {
+    LUXEL_TRY(const device::FirstHits hits,
+              device::first_hits(tracer, commands, some, diagonal_m, {kRaysPerElement, 1}));
+    if (spent_s >= kWarmUpSeconds)
+      rates.push_back(double(hits.elements) * kRaysPerElement / hits.seconds);
+    spent_s += hits.seconds;
+  }
+  std::ranges::sort(rates);
+  return rates[rates.size() / 2];
+}
+
 /// What one kind of hierarchy makes of a scene's rays.
 struct DeviceRates {
   size_t triangles = 0;
   double built_s = 0;
   double by_element = 0, sorted = 0;  ///< rays per second
+  double made = 0;                    ///< of rays that the device makes itself
   double others = 0;                  ///< share of rays that meet another triangle
   double elsewhere = 0;               ///< share of rays that end at another place
 };
 
-Result<DeviceRates> rates_on_device(const gpu::Device& device, const scene::Scene& scene,
+Result<DeviceRates> rates_on_device(const gpu::Device& device, const validate::Prepared& p,
                                     trace::HierarchyKind kind, const Rays& rays,
                                     std::span<const trace::Hit> expected) {
   DeviceRates out;
   const auto start = Clock::now();
-  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, scene, kind));
+  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p.scene, kind));
   out.built_s = seconds_since(start), out.triangles = tracer.triangles();
   LUXEL_TRY(out.by_element, device_rate(tracer, rays.by_element));
   LUXEL_TRY(out.sorted, device_rate(tracer, rays.sorted));
+  LUXEL_TRY(out.made, made_rate(tracer, p, most_rays(device)));
   std::vector<trace::Hit> hits(rays.sorted.size());
   LUXEL_TRY_STATUS(tracer.closest_hits(rays.sorted, hits));
   out.others = share_of_others(expected, hits);
@@ -122,14 +151,14 @@ Result<DeviceRates> rates_on_device(const gpu::Device& device, const scene::Scen
 void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, double processor,
              const DeviceRates& on_device, Table& table) {
   const char* name = kind == trace::HierarchyKind::wide ? "wide" : "binary";
-  table.rows.push_back({scene, std::to_string(on_device.triangles),
-                        fmt::format("{:.1f}", double(rays) * 1e-6),
-                        fmt::format("{:.2f}", processor * 1e-6), name,
-                        fmt::format("{:.1f}", on_device.by_element * 1e-6),
-                        fmt::format("{:.1f}", on_device.sorted * 1e-6),
-                        fmt::format("{:.4f}", 100 * on_device.others),
-                        fmt::format("{:.5f}", 100 * on_device.elsewhere),
-                        fmt::format("{:.0f}", on_device.built_s * 1e3)});
+  table.rows.push_back(
+      {scene, std::to_string(on_device.triangles), fmt::format("{:.1f}", double(rays) * 1e-6),
+       fmt::format("{:.2f}", processor * 1e-6), name,
+       fmt::format("{:.1f}", on_device.by_element * 1e-6),
+       fmt::format("{:.1f}", on_device.sorted * 1e-6), fmt::format("{:.1f}", on_device.made * 1e-6),
+       fmt::format("{:.4f}", 100 * on_device.others),
+       fmt::format("{:.5f}", 100 * on_device.elsewhere),
+       fmt::format("{:.0f}", on_device.built_s * 1e3)});
   table.json.push_back({{"scene", scene},
                         {"triangles", on_device.triangles},
                         {"rays", rays},
@@ -137,6 +166,7 @@ void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, d
                         {"hierarchy", name},
                         {"device_mrays_per_s", on_device.by_element * 1e-6},
                         {"device_sorted_mrays_per_s", on_device.sorted * 1e-6},
+                        {"device_made_mrays_per_s", on_device.made * 1e-6},
                         {"share_of_other_triangles", on_device.others},
                         {"share_of_other_places", on_device.elsewhere},
                         {"build_s", on_device.built_s}});
@@ -146,13 +176,12 @@ Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::De
                      Table& table) {
   Progress layout;
   LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), 512, layout));
-  const bool is_processor = device.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const Rays rays = rays_of(*p, is_processor ? kMostRaysOfProcessor : kMostRays);
+  const Rays rays = rays_of(*p, most_rays(device));
   std::vector<trace::Hit> expected(rays.sorted.size());
   const double processor = processor_rate(*p->tracer, rays.sorted, expected);
   for (const trace::HierarchyKind kind :
        {trace::HierarchyKind::binary, trace::HierarchyKind::wide}) {
-    LUXEL_TRY(const DeviceRates on_device, rates_on_device(device, p->scene, kind, rays, expected));
+    LUXEL_TRY(const DeviceRates on_device, rates_on_device(device, *p, kind, rays, expected));
     add_row(name, rays.sorted.size(), kind, processor, on_device, table);
   }
   return {};
@@ -164,7 +193,7 @@ Result<Table> measure_gpu(const std::filesystem::path& shared, int threads) {
   const ThreadLimit limit(threads);
   Table table = new_table(
       "gpu", {"scene", "triangles", "rays [millions]", "processor, Mrays/s", "hierarchy",
-              "device, Mrays/s", "device, rays sorted, Mrays/s",
+              "device, Mrays/s", "device, rays sorted, Mrays/s", "rays made there, Mrays/s",
               "rays that meet another triangle [%]", "another place [%]", "built in [ms]"});
   LUXEL_TRY(const auto device, gpu::Device::open({}));
   table.notes.push_back("device: " + device->name);

@@ -1,47 +1,16 @@
 #include "luxel/base/random.h"
 
+#include "luxel/base/both_sobol.h"
 #include "luxel/base/check.h"
 #include "luxel/base/sobol_eighths.h"
 #include "luxel/base/vectorize.h"
 
 namespace luxel {
 inline namespace base {
-namespace {
-
-inline uint32_t reverse_bits(uint32_t x) {
-  x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
-  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
-  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
-  return (x >> 16) | (x << 16);
-}
-
-/// The three low bits in reverse order; x < 8.
-inline uint8_t reverse_3_bits(uint32_t x) { return uint8_t((x & 1) << 2 | (x & 2) | (x & 4) >> 2); }
-
-// A bijection in which each bit depends only on lower bits: on bit-reversed input this is nested
-// (Owen) scrambling. Constants from Vegdahl's search, as published. [Vegdahl21]
-inline uint32_t scramble_upwards(uint32_t x, uint32_t seed) {
-  x ^= x * 0x3d20adeau;
-  x += seed;
-  x *= (seed >> 16) | 1u;
-  x ^= x * 0x05526c56u;
-  x ^= x * 0x53a22864u;
-  return x;
-}
-
-// The second Sobol dimension, bit-reversed: row k of its generator is row k-1 of Pascal's triangle
-// modulo 2, which the loop below unrolls as prefix XORs of the index. [Ahmed24, eq. 12]
-inline uint32_t sobol_second_reversed(uint32_t index) {
-  index ^= (index & 0xaaaaaaaau) >> 1;
-  index ^= (index & 0xccccccccu) >> 2;
-  index ^= (index & 0xf0f0f0f0u) >> 4;
-  index ^= (index & 0xff00ff00u) >> 8;
-  index ^= (index & 0xffff0000u) >> 16;
-  return index;
-}
-
-}  // namespace
+using both::reverse_3_bits;
+using both::reverse_bits;
+using both::scramble_upwards;
+using both::sobol_second_reversed;
 
 Vec2 sobol_owen_2d(uint32_t index, uint64_t seed) {
   // The first dimension is the van der Corput sequence: reversed, it is the index itself.
@@ -89,15 +58,16 @@ void sobol_owen_2d_points(uint64_t seed, std::span<const uint32_t> indices, std:
 SobolEighths sobol_owen_eighths(uint64_t seed) {
   SobolEighths out;
   for (uint32_t k = 0; k < 8; ++k) {
-    const uint8_t from = reverse_3_bits(k);
-    out.x[from] = reverse_3_bits(scramble_upwards(k, uint32_t(seed)) & 7);
-    out.y[from] = reverse_3_bits(scramble_upwards(k, uint32_t(seed >> 32)) & 7);
+    const uint32_t from = reverse_3_bits(k);
+    out.x[from] = uint8_t(reverse_3_bits(scramble_upwards(k, uint32_t(seed)) & 7));
+    out.y[from] = uint8_t(reverse_3_bits(scramble_upwards(k, uint32_t(seed >> 32)) & 7));
   }
   return out;
 }
 
 SobolEighth sobol_eighth(uint32_t index) {
-  return {reverse_3_bits(index & 7), reverse_3_bits(sobol_second_reversed(index) & 7)};
+  return {uint8_t(reverse_3_bits(index & 7)),
+          uint8_t(reverse_3_bits(sobol_second_reversed(index) & 7))};
 }
 
 }  // namespace base

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "luxel/base/both_sobol.h"
 #include "luxel/base/vec.h"
 
 namespace luxel {
@@ -19,7 +20,7 @@ inline uint64_t hash64(uint64_t x) {
 inline uint64_t hash64(uint64_t a, uint64_t b) { return hash64(hash64(a) ^ b); }
 
 /// [0, 1) from the top 24 bits: exact in a float, never 1.
-inline float unit_float(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+using both::unit_float;
 
 /// A counter-based stream of uniform numbers in [0, 1).
 struct RandomStream {

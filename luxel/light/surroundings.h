@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/base/both_directions.h"
 #include "luxel/base/random.h"
 #include "luxel/scene/scene.h"
 
@@ -57,9 +58,6 @@ BrightTexelSample sample_bright_texels(const scene::Scene& scene, const Surround
 float folded_cosine(Vec3 direction, Vec3 normal, Vec3 geometric_normal);
 
 /// That mirror image: the direction itself where it points away from the triangle.
-inline Vec3 mirrored_above(Vec3 direction, Vec3 geometric_normal) {
-  const float above = dot(direction, geometric_normal);
-  return above < 0 ? direction + geometric_normal * (-2 * above) : direction;
-}
+using both::mirrored_above;
 
 }  // namespace luxel::light

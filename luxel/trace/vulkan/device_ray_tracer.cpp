@@ -1,11 +1,9 @@
 #include "luxel/trace/vulkan/device_ray_tracer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 
 #include "luxel/base/check.h"
-#include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/scene/sides.h"
@@ -20,15 +18,10 @@ namespace luxel::trace {
 namespace {
 
 constexpr size_t kGroup = 64;  // as the shaders have it
-/// Rays of the first dispatch: few enough for a slow device. Later ones take as long as this:
-/// drivers reset a device that works for seconds, and a screen waits for what is under way.
-constexpr size_t kFirstDispatch = 4096;
-constexpr double kDispatchSeconds = 0.02;
-/// A dispatch has at most so many times the rays of the one before.
-constexpr double kMostGrowth = 4;
 
 struct TracePush {
-  VkDeviceAddress nodes, triangles, open_materials, open_triangles, open_texels, rays, out;
+  DeviceWorld world;
+  VkDeviceAddress rays, out;
   uint32_t first, end;
 };
 
@@ -58,10 +51,10 @@ DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& 
     : device_(&device),
       scene_(&scene),
       commands_(std::move(commands)),
-      first_triangle_(scene::first_triangles(scene)),
-      rays_per_dispatch_(kFirstDispatch) {}
+      first_triangle_(scene::first_triangles(scene)) {}
 
 Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
+  kind_ = kind;
   std::vector<DeviceTriangle> triangles = device_triangles(*scene_);
   if (triangles.size() >= ChildRef::kFirstMask)
     return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
@@ -110,32 +103,20 @@ Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device, const 
   return out;
 }
 
+DeviceWorld DeviceRayTracer::world() const {
+  return {nodes_.address, triangles_.address, open_materials_.address, open_triangles_.address,
+          open_texels_.address};
+}
+
 Result<double> DeviceRayTracer::dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays,
                                          VkDeviceAddress out, size_t count) {
-  const size_t most = std::min<size_t>(device_->limits.maxComputeWorkGroupCount[0], 1u << 20);
-  double seconds = 0;
-  for (size_t first = 0; first < count;) {
-    const size_t some = std::min(rays_per_dispatch_, count - first);
-    const TracePush push{nodes_.address,
-                         triangles_.address,
-                         open_materials_.address,
-                         open_triangles_.address,
-                         open_texels_.address,
-                         rays,
-                         out,
-                         uint32_t(first),
-                         uint32_t(first + some)};
-    const auto start = Clock::now();
-    LUXEL_TRY_STATUS(commands_.run([&](VkCommandBuffer c) {
-      gpu::bind(*device_, c, pipeline, push);
-      device_->vk.vkCmdDispatch(c, uint32_t((some + kGroup - 1) / kGroup), 1, 1);
-    }));
-    const double took = seconds_since(start);
-    seconds += took, first += some;
-    const double next = double(some) * std::min(kMostGrowth, kDispatchSeconds / took);
-    rays_per_dispatch_ = std::clamp(size_t(next), kGroup, most * kGroup);
-  }
-  return seconds;
+  const size_t most = kGroup * device_->limits.maxComputeWorkGroupCount[0];
+  return gpu::run_in_pieces(
+      commands_, count, most, piece_, [&](VkCommandBuffer c, size_t first, size_t some) {
+        const TracePush push{world(), rays, out, uint32_t(first), uint32_t(first + some)};
+        gpu::bind(*device_, c, pipeline, push);
+        device_->vk.vkCmdDispatch(c, uint32_t((some + kGroup - 1) / kGroup), 1, 1);
+      });
 }
 
 Status DeviceRayTracer::copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes) {

@@ -6,6 +6,7 @@
 
 #include "luxel/gpu/buffer.h"
 #include "luxel/gpu/commands.h"
+#include "luxel/gpu/pieces.h"
 #include "luxel/gpu/pipeline.h"
 #include "luxel/trace/ray_tracer.h"
 
@@ -34,6 +35,11 @@ enum class HierarchyKind : uint8_t { binary, wide };
 /// a device, binary on a data-centre GPU (docs/method/gpu.md).
 HierarchyKind faster_hierarchy(const gpu::Device& device);
 
+/// Where shaders find what rays are traced through: World in shaders/ray.glsl.
+struct DeviceWorld {
+  VkDeviceAddress nodes = 0, triangles = 0, open_materials = 0, open_triangles = 0, open_texels = 0;
+};
+
 /// Rays and triangles in a device's memory. It answers as RayTracer does, up to rounding: rays that
 /// graze an edge may meet its other side, and of surfaces that coincide either may be met. Surfaces
 /// let light through by chance as they do there: the same ray has the same luck. It knows no tints.
@@ -58,6 +64,12 @@ class DeviceRayTracer {
   /// Fills rays.hits; returns the seconds that the device took. Errors: the device is lost.
   Result<double> closest_hits(DeviceRays& rays);
 
+  /// For shaders that trace rays themselves: they include shaders/binary.glsl or shaders/wide.glsl,
+  /// as kind() is, and get lets_light_through() as their constant 0.
+  DeviceWorld world() const;
+  HierarchyKind kind() const { return kind_; }
+  bool lets_light_through() const { return lets_light_through_; }
+  const gpu::Device& device() const { return *device_; }
   size_t triangles() const { return triangle_count_; }
   uint64_t bytes() const { return nodes_.size + triangles_.size; }
 
@@ -81,11 +93,12 @@ class DeviceRayTracer {
   gpu::Commands commands_;
   std::vector<uint32_t> first_triangle_;
   size_t triangle_count_ = 0;
+  HierarchyKind kind_ = HierarchyKind::binary;
   bool lets_light_through_ = false;  ///< whether some triangle does: shaders without are faster
   gpu::Buffer nodes_, triangles_;
   gpu::Buffer open_materials_, open_triangles_, open_texels_;  ///< SeeThrough
   gpu::Pipeline closest_, occluded_;
-  size_t rays_per_dispatch_;
+  gpu::PieceSize piece_;
   // Where rays from the processor and their answers stop on their way.
   gpu::Buffer sent_, answered_;
   DeviceRays room_;

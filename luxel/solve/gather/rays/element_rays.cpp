@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "luxel/base/circle.h"
+#include "luxel/base/both_directions.h"
 #include "luxel/base/sobol_eighths.h"
 #include "luxel/base/vectorize.h"
 #include "luxel/base/warp.h"
@@ -19,24 +19,12 @@ size_t cell_at(SobolEighth at) {
   return spread(at.x) | spread(at.y) << 1;
 }
 
-/// A counting sort.
-void sort_by_plain_cell(Samples samples, PlainCells& out) {
-  out.of = samples, out.first_of = {}, out.sample.resize(samples.count());
-  for (uint32_t s = samples.first; s < samples.end; ++s)
-    ++out.first_of[cell_at(sobol_eighth(s)) + 1];
-  for (size_t c = 0; c < kCells; ++c) out.first_of[c + 1] += out.first_of[c];
-  auto place = out.first_of;
-  for (uint32_t s = samples.first; s < samples.end; ++s)
-    out.sample[place[cell_at(sobol_eighth(s))]++] = s;
-}
-
 /// Directions about +z from points of the unit square.
 LUXEL_VECTOR_CLONES
 void local_directions(const float* u, const float* v, float* x, float* y, float* z, size_t count) {
   for (size_t i = 0; i < count; ++i) {
-    const Vec2 circle = unit_circle(u[i]);
-    const float r = std::sqrt(v[i]);
-    x[i] = circle.x * r, y[i] = circle.y * r, z[i] = std::sqrt(1 - v[i]);
+    const Vec3 d = both::cosine_direction(u[i], v[i]);
+    x[i] = d.x, y[i] = d.y, z[i] = d.z;
   }
 }
 
@@ -77,6 +65,17 @@ Vec3 direction_in(size_t cell, float across, float along) {
 }
 
 }  // namespace
+
+// A counting sort.
+void sort_by_plain_cell(Samples samples, PlainCells& out) {
+  out.of = samples, out.first_of = {}, out.sample.resize(samples.count());
+  for (uint32_t s = samples.first; s < samples.end; ++s)
+    ++out.first_of[cell_at(sobol_eighth(s)) + 1];
+  for (size_t c = 0; c < kCells; ++c) out.first_of[c + 1] += out.first_of[c];
+  auto place = out.first_of;
+  for (uint32_t s = samples.first; s < samples.end; ++s)
+    out.sample[place[cell_at(sobol_eighth(s))]++] = s;
+}
 
 CellCones cell_cones() {
   // The farthest from the middle is on the border; between its points it bulges by less than this.

@@ -46,6 +46,9 @@ struct PlainCells {
   std::array<uint32_t, kCells + 1> first_of{};  ///< the first of each cell
 };
 
+/// Sorts them, ascending within each cell.
+void sort_by_plain_cell(Samples samples, PlainCells& out);
+
 /// Rays of one element with the number of the sample that each belongs to; and buffers, reused from
 /// element to element.
 struct RayBatch {
@@ -73,9 +76,11 @@ struct RayBatch {
   }
 };
 
+/// What the seeds of all elements' rays are made of.
+inline uint64_t seed_of_all_rays(uint64_t seed) { return seed ^ 0x6a7e; }
 /// The seed of an element's rays.
 inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
-  return hash64(seed ^ 0x6a7e, element);
+  return hash64(seed_of_all_rays(seed), element);
 }
 
 /// Cosine-distributed about `normal`, those below the triangle mirrored to above it; sorted so that

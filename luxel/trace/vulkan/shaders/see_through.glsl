@@ -2,6 +2,8 @@
 // rules. Numbers by chance are those of the processor's rays, bit for bit.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/base/both_sobol.h"
 
 struct Picture {
   uint first, width, height, wrap_u, wrap_v, nearest;
@@ -51,7 +53,6 @@ uvec2 hash64(uvec2 x) {
   return mixed64(x, 31);
 }
 uvec2 hash64(uvec2 a, uvec2 b) { return hash64(hash64(a) ^ b); }
-float unit_float(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }
 
 // A number in [0, 1) that follows from the bits of a ray and of what it meets.
 float chance_of(vec3 origin, vec3 direction, uint instance, uint triangle) {

@@ -1,0 +1,99 @@
+// Rays that a device makes are those of the processor. Skipped without a device.
+#include "luxel/solve/device/first_hits.h"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/scene/procedural.h"
+
+namespace luxel::device {
+namespace {
+
+using ::testing::IsEmpty;
+
+/// Elements on the unit sphere, some of whose normals are bent.
+transport::Elements elements_on_sphere(size_t count) {
+  RandomStream random{17};
+  transport::Elements out;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 flat = uniform_sphere_sample(random.next2());
+    const Vec3 bent = normalize(flat + 0.8f * uniform_sphere_sample(random.next2()));
+    out.position.push_back(flat), out.geometric_normal.push_back(flat);
+    out.normal.push_back(i % 2 ? bent : flat);
+  }
+  out.normal[0] = out.geometric_normal[0] = {0, 0, 1};
+  out.normal[1] = out.geometric_normal[1] = {0, 0, -1};
+  return out;
+}
+
+std::vector<trace::DeviceHit> read_back(const gpu::Device& device, gpu::Commands& commands,
+                                        const gpu::Buffer& from) {
+  const auto to = gpu::make_buffer(device, from.size, gpu::Access::to_host, "hits");
+  EXPECT_TRUE(to);
+  EXPECT_TRUE(commands.run([&](VkCommandBuffer c) {
+    const VkBufferCopy all{0, 0, from.size};
+    device.vk.vkCmdCopyBuffer(c, from.buffer.get(), to->buffer.get(), 1, &all);
+  }));
+  std::vector<trace::DeviceHit> out(from.size / sizeof(trace::DeviceHit));
+  std::memcpy(out.data(), to->mapped, from.size);
+  return out;
+}
+
+/// Directions as they come back from a large sphere around: where they meet it.
+std::vector<Vec3> met_places(const scene::Scene& scene, const FirstHits& hits,
+                             std::span<const trace::DeviceHit> values, size_t element) {
+  std::vector<Vec3> out;
+  for (size_t k = 0; k < hits.samples; ++k) {
+    const trace::DeviceHit& hit = values[hits.index_of(element, k)];
+    EXPECT_NE(hit.number, trace::DeviceHit::kNoTriangle);
+    out.push_back(scene::world_position(
+        scene, {0, hit.number & ~trace::DeviceHit::kBackFace, {hit.u, hit.v}}));
+  }
+  return out;
+}
+
+// 10^5 rays from a small sphere to a large one around it. The number of samples is that of cells, a
+// multiple, less, and no multiple. Directions agree to some roundings of the square root that tells
+// how far they lean, which are largest near the pole: 10^-4 of the way.
+TEST(FirstHits, AreThoseOfTheProcessorsRays) {
+  gpu::DeviceParams opened;
+  opened.validate = true;
+  const auto device = gpu::Device::open(opened);
+  if (!device) GTEST_SKIP() << device.error().message;
+  auto commands = gpu::Commands::make(**device);
+  ASSERT_TRUE(commands);
+  const scene::Scene scene = scene::inward_sphere(10, 4, {0.5f, 0.5f, 0.5f}, {});
+  const transport::Elements elements = elements_on_sphere(350);  // no multiple of 64
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const auto embree = trace::RayTracer::build(scene);
+  for (const trace::HierarchyKind kind :
+       {trace::HierarchyKind::binary, trace::HierarchyKind::wide}) {
+    const auto tracer = trace::DeviceRayTracer::build(**device, scene, kind);
+    ASSERT_TRUE(tracer);
+    for (const uint32_t samples : {32u, 64u, 100u, 128u}) {
+      const uint64_t seed = 5;
+      const auto hits = first_hits(*tracer, *commands, elements, diagonal_m, {samples, seed});
+      ASSERT_TRUE(hits) << hits.error().message;
+      const std::vector<trace::DeviceHit> values = read_back(**device, *commands, hits->hits);
+      for (size_t i = 0; i < elements.size(); ++i) {
+        std::vector<trace::Ray> rays(samples);
+        gather::element_rays(
+            trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
+            elements.normal[i], elements.geometric_normal[i], gather::seed_of_rays(seed, i), rays);
+        const std::vector<Vec3> places = met_places(scene, *hits, values, i);
+        for (size_t k = 0; k < samples; ++k) {
+          const trace::Hit expected = embree->closest_hit(rays[k]);
+          ASSERT_LT(length(places[k] - scene::world_position(scene, expected.point())), 1e-3f)
+              << "samples " << samples << ", element " << i << ", ray " << k;
+        }
+      }
+    }
+  }
+  EXPECT_THAT((*device)->messages(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace luxel::device

@@ -110,9 +110,10 @@ Result<double> made_rate(const trace::DeviceRayTracer& tracer, const validate::P
   const float diagonal_m = scene::world_bounds(p.scene).diagonal();
   std::vector<double> rates;
   double spent_s = 0;
+  gpu::PieceSize piece = device::kFirstPiece;
   while (spent_s < kWarmUpSeconds + kMeasuredSeconds || rates.empty()) {
     LUXEL_TRY(const device::FirstHits hits,
-              device::first_hits(tracer, commands, some, diagonal_m, {kRaysPerElement, 1}));
+              device::first_hits(tracer, commands, some, diagonal_m, {kRaysPerElement, 1}, piece));
     if (spent_s >= kWarmUpSeconds)
       rates.push_back(double(hits.elements) * kRaysPerElement / hits.seconds);
     spent_s += hits.seconds;

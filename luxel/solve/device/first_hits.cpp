@@ -46,7 +46,7 @@ Result<gpu::Buffer> buffer_of_samples(const gpu::Device& device, uint32_t sample
 
 Result<FirstHits> first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
                              const transport::Elements& elements, float diagonal_m,
-                             const FirstHitsParams& params) {
+                             const FirstHitsParams& params, gpu::PieceSize& piece) {
   const size_t n = elements.size(), tiles = (n + kTogether - 1) / kTogether;
   LUXEL_CHECK(n > 0 && params.samples > 0);
   LUXEL_CHECK(tiles * kTogether * params.samples <= UINT32_MAX);
@@ -67,9 +67,8 @@ Result<FirstHits> first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands
   HitsPush push{tracer.world(),   places.address, plain.address,
                 out.hits.address, uint32_t(seed), uint32_t(seed >> 32),
                 uint32_t(n),      params.samples, 0};
-  gpu::PieceSize size{64};
   LUXEL_TRY(out.seconds, gpu::run_in_pieces(commands, tiles * gather::kCells,
-                                            device.limits.maxComputeWorkGroupCount[0], size,
+                                            device.limits.maxComputeWorkGroupCount[0], piece,
                                             [&](VkCommandBuffer c, size_t first, size_t count) {
                                               push.first_group = uint32_t(first);
                                               gpu::bind(device, c, pipeline, push);

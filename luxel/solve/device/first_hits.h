@@ -27,9 +27,11 @@ struct FirstHitsParams {
 };
 
 /// Element i sends the rays that gather sends from it, with gather::seed_of_rays(seed, i): the same
-/// up to rounding. Errors: no memory, the device is lost.
+/// up to rounding. `piece` is of groups of 64 rays or so; kFirstPiece where nothing is known.
+/// Errors: no memory, the device is lost.
+inline constexpr gpu::PieceSize kFirstPiece{64};
 Result<FirstHits> first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
                              const transport::Elements& elements, float diagonal_m,
-                             const FirstHitsParams& params);
+                             const FirstHitsParams& params, gpu::PieceSize& piece);
 
 }  // namespace luxel::device

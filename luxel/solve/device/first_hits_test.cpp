@@ -75,7 +75,9 @@ TEST(FirstHits, AreThoseOfTheProcessorsRays) {
     ASSERT_TRUE(tracer);
     for (const uint32_t samples : {32u, 64u, 100u, 128u}) {
       const uint64_t seed = 5;
-      const auto hits = first_hits(*tracer, *commands, elements, diagonal_m, {samples, seed});
+      gpu::PieceSize piece = kFirstPiece;
+      const auto hits =
+          first_hits(*tracer, *commands, elements, diagonal_m, {samples, seed}, piece);
       ASSERT_TRUE(hits) << hits.error().message;
       const std::vector<trace::DeviceHit> values = read_back(**device, *commands, hits->hits);
       for (size_t i = 0; i < elements.size(); ++i) {

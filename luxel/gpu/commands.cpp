@@ -95,13 +95,27 @@ Status Commands::run(const Record& record) {
 
 void full_barrier(const Device& device, VkCommandBuffer commands) {
   auto all = structure<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
-  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  all.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT;
   all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
   all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
   auto info = structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   info.memoryBarrierCount = 1;
   info.pMemoryBarriers = &all;
   device.vk.vkCmdPipelineBarrier2KHR(commands, &info);
+}
+
+Result<Buffer> uploaded(Commands& commands, std::span<const std::byte> bytes,
+                        std::string_view what) {
+  const Device& device = commands.device();
+  LUXEL_TRY(const Buffer sent, buffer_with(device, bytes, what));
+  LUXEL_TRY(Buffer out, make_buffer(device, bytes.size(), Access::device, what));
+  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {
+    const VkBufferCopy all{0, 0, bytes.size()};
+    device.vk.vkCmdCopyBuffer(c, sent.buffer.get(), out.buffer.get(), 1, &all);
+    full_barrier(device, c);
+  }));
+  return out;
 }
 
 }  // namespace luxel::gpu

@@ -4,7 +4,7 @@
 #include <deque>
 #include <functional>
 
-#include "luxel/gpu/device.h"
+#include "luxel/gpu/buffer.h"
 
 namespace luxel::gpu {
 
@@ -52,8 +52,13 @@ class Commands {
   std::deque<Given> given_;
 };
 
-/// All that came before is done and seen by all that comes after. Simple, and as fast as anything
-/// for the few passes of a frame.
+/// All that came before is done and seen by all that comes after, the processor too. Simple, and as
+/// fast as anything for the few passes of a frame.
 void full_barrier(const Device& device, VkCommandBuffer commands);
+
+/// A buffer of the device's own memory with these bytes, which shaders read faster than one that
+/// the processor writes. Not empty. Errors: no memory, the device is lost.
+Result<Buffer> uploaded(Commands& commands, std::span<const std::byte> bytes,
+                        std::string_view what);
 
 }  // namespace luxel::gpu

@@ -19,7 +19,10 @@ Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, Piec
   for (size_t first = 0; first < count;) {
     const size_t some = std::min({std::max<size_t>(size.items, 1), most, count - first});
     const auto start = Clock::now();
-    LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) { record(c, first, some); }));
+    LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {
+      full_barrier(commands.device(), c);
+      record(c, first, some);
+    }));
     const double took = std::max(seconds_since(start), 1e-9);
     seconds += took, first += some;
     size.items = size_t(double(some) * std::min(kMostGrowth, kPieceSeconds / took));

@@ -14,6 +14,7 @@ constexpr size_t kTogether = 64;  // elements of a work group, as the shader has
 struct DeviceElement {
   Vec3 origin, normal, geometric_normal;
 };
+static_assert(sizeof(DeviceElement) == 36);
 
 struct HitsPush {
   trace::DeviceWorld world;
@@ -24,22 +25,22 @@ struct HitsPush {
 };
 static_assert(sizeof(HitsPush) <= 128);
 
-Result<gpu::Buffer> buffer_of_elements(const gpu::Device& device,
-                                       const transport::Elements& elements, float diagonal_m) {
+Result<gpu::Buffer> buffer_of_elements(gpu::Commands& commands, const transport::Elements& elements,
+                                       float diagonal_m) {
   std::vector<DeviceElement> out(elements.size());
   for (size_t i = 0; i < out.size(); ++i)
     out[i] = {trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
               elements.normal[i], elements.geometric_normal[i]};
-  return gpu::buffer_with(device, std::as_bytes(std::span(out)), "the buffer of elements");
+  return gpu::uploaded(commands, std::as_bytes(std::span(out)), "the buffer of elements");
 }
 
 /// PlainCells in element_rays.glsl.
-Result<gpu::Buffer> buffer_of_samples(const gpu::Device& device, uint32_t samples) {
+Result<gpu::Buffer> buffer_of_samples(gpu::Commands& commands, uint32_t samples) {
   gather::PlainCells plain;
   gather::sort_by_plain_cell({0, samples}, plain);
   std::vector<uint32_t> words(plain.first_of.begin(), plain.first_of.end());
   words.insert(words.end(), plain.sample.begin(), plain.sample.end());
-  return gpu::buffer_with(device, std::as_bytes(std::span(words)), "the buffer of samples");
+  return gpu::uploaded(commands, std::as_bytes(std::span(words)), "the buffer of samples");
 }
 
 }  // namespace
@@ -51,8 +52,8 @@ Result<FirstHits> first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands
   LUXEL_CHECK(n > 0 && params.samples > 0);
   LUXEL_CHECK(tiles * kTogether * params.samples <= UINT32_MAX);
   const gpu::Device& device = tracer.device();
-  LUXEL_TRY(const gpu::Buffer places, buffer_of_elements(device, elements, diagonal_m));
-  LUXEL_TRY(const gpu::Buffer plain, buffer_of_samples(device, params.samples));
+  LUXEL_TRY(const gpu::Buffer places, buffer_of_elements(commands, elements, diagonal_m));
+  LUXEL_TRY(const gpu::Buffer plain, buffer_of_samples(commands, params.samples));
   FirstHits out{n, params.samples, {}, 0};
   LUXEL_TRY(out.hits,
             gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(trace::DeviceHit),

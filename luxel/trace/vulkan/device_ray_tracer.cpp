@@ -27,17 +27,10 @@ struct TracePush {
 
 /// At least one value: a buffer is never empty.
 template <class T>
-Result<gpu::Buffer> device_buffer(const gpu::Device& device, gpu::Commands& commands,
-                                  std::vector<T> values, std::string_view what) {
+Result<gpu::Buffer> uploaded_or_one(gpu::Commands& commands, std::vector<T> values,
+                                    std::string_view what) {
   if (values.empty()) values.emplace_back();
-  const auto bytes = std::as_bytes(std::span(values));
-  LUXEL_TRY(const gpu::Buffer sent, gpu::buffer_with(device, bytes, what));
-  LUXEL_TRY(gpu::Buffer out, gpu::make_buffer(device, bytes.size(), gpu::Access::device, what));
-  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {
-    const VkBufferCopy all{0, 0, bytes.size()};
-    device.vk.vkCmdCopyBuffer(c, sent.buffer.get(), out.buffer.get(), 1, &all);
-  }));
-  return out;
+  return gpu::uploaded(commands, std::as_bytes(std::span(values)), what);
 }
 
 }  // namespace
@@ -63,22 +56,21 @@ Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
   constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
   SeeThrough open = find_see_through(*scene_, triangles);
   lets_light_through_ = !open.triangles.empty();
-  LUXEL_TRY(open_materials_, device_buffer(*device_, commands_, std::move(open.materials), kOpen));
-  LUXEL_TRY(open_triangles_, device_buffer(*device_, commands_, std::move(open.triangles), kOpen));
-  LUXEL_TRY(open_texels_, device_buffer(*device_, commands_, std::move(open.texels), kOpen));
+  LUXEL_TRY(open_materials_, uploaded_or_one(commands_, std::move(open.materials), kOpen));
+  LUXEL_TRY(open_triangles_, uploaded_or_one(commands_, std::move(open.triangles), kOpen));
+  LUXEL_TRY(open_texels_, uploaded_or_one(commands_, std::move(open.texels), kOpen));
   constexpr std::string_view kBoxes = "the buffer of boxes around triangles";
   std::vector<DeviceTriangle> sorted;
   if (kind == HierarchyKind::wide) {
     WideHierarchy wide = widen(sort_into_hierarchy(std::move(triangles), WideNode::kMostInLeaf));
-    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, std::move(wide.nodes), kBoxes));
+    LUXEL_TRY(nodes_, uploaded_or_one(commands_, std::move(wide.nodes), kBoxes));
     sorted = std::move(wide.triangles);
   } else {
     BinaryHierarchy binary = sort_into_hierarchy(std::move(triangles));
-    LUXEL_TRY(nodes_, device_buffer(*device_, commands_, std::move(binary.nodes), kBoxes));
+    LUXEL_TRY(nodes_, uploaded_or_one(commands_, std::move(binary.nodes), kBoxes));
     sorted = std::move(binary.triangles);
   }
-  LUXEL_TRY(triangles_,
-            device_buffer(*device_, commands_, std::move(sorted), "the buffer of triangles"));
+  LUXEL_TRY(triangles_, uploaded_or_one(commands_, std::move(sorted), "the buffer of triangles"));
   return {};
 }
 
@@ -122,6 +114,7 @@ Result<double> DeviceRayTracer::dispatch(const gpu::Pipeline& pipeline, VkDevice
 Status DeviceRayTracer::copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes) {
   return commands_.run([&](VkCommandBuffer c) {
     const VkBufferCopy some{0, 0, bytes};
+    gpu::full_barrier(*device_, c);
     device_->vk.vkCmdCopyBuffer(c, from.buffer.get(), to.buffer.get(), 1, &some);
     gpu::full_barrier(*device_, c);
   });
@@ -202,11 +195,9 @@ Result<DeviceRays> DeviceRayTracer::upload(std::span<const Ray> rays) {
   DeviceRays out;
   out.count = rays.size();
   constexpr std::string_view kWhat = "the buffer of rays";
-  LUXEL_TRY(const gpu::Buffer sent, gpu::buffer_with(*device_, std::as_bytes(rays), kWhat));
-  LUXEL_TRY(out.rays, gpu::make_buffer(*device_, sent.size, gpu::Access::device, kWhat));
+  LUXEL_TRY(out.rays, gpu::uploaded(commands_, std::as_bytes(rays), kWhat));
   LUXEL_TRY(out.hits, gpu::make_buffer(*device_, rays.size() * sizeof(DeviceHit),
                                        gpu::Access::device, kWhat));
-  LUXEL_TRY_STATUS(copy(sent, out.rays, sent.size));
   return out;
 }
 

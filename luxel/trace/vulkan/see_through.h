@@ -24,6 +24,7 @@ struct SeeThroughMaterial {
   float alpha = 1, cutoff = 0.5f, transmission = 0, metallic = 0;
   DevicePicture base, metal, glass;
 };
+static_assert(sizeof(SeeThroughMaterial) == 92);
 
 /// A triangle of such a material. Places in its pictures are already transformed.
 struct SeeThroughTriangle {
@@ -31,6 +32,7 @@ struct SeeThroughTriangle {
   uint32_t material = 0;  ///< into SeeThrough::materials
   std::array<Vec2, 3> base, metal, glass;
 };
+static_assert(sizeof(SeeThroughTriangle) == 84);
 
 struct SeeThrough {
   std::vector<SeeThroughMaterial> materials;

@@ -64,18 +64,24 @@ double processor_rate(const trace::RayTracer& tracer, std::span<const trace::Ray
   return double(rays.size()) / seconds_since(start);
 }
 
-/// The median of rounds over rays that lie on the device, after others in which its clock rises.
-Result<double> device_rate(trace::DeviceRayTracer& tracer, std::span<const trace::Ray> rays) {
-  LUXEL_TRY(trace::DeviceRays there, tracer.upload(rays));
+/// Rays per second: the median of rounds, after others in which a device's clock rises. A round
+/// returns the seconds that it took.
+Result<double> median_rate(size_t rays, const std::function<Result<double>()>& round) {
   std::vector<double> rates;
   double spent_s = 0;
   while (spent_s < kWarmUpSeconds + kMeasuredSeconds || rates.empty()) {
-    LUXEL_TRY(const double seconds, tracer.closest_hits(there));
-    if (spent_s >= kWarmUpSeconds) rates.push_back(double(rays.size()) / seconds);
+    LUXEL_TRY(const double seconds, round());
+    if (spent_s >= kWarmUpSeconds) rates.push_back(double(rays) / seconds);
     spent_s += seconds;
   }
   std::ranges::sort(rates);
   return rates[rates.size() / 2];
+}
+
+/// The rate of rays that lie on the device.
+Result<double> device_rate(trace::DeviceRayTracer& tracer, std::span<const trace::Ray> rays) {
+  LUXEL_TRY(trace::DeviceRays there, tracer.upload(rays));
+  return median_rate(rays.size(), [&] { return tracer.closest_hits(there); });
 }
 
 /// The share of rays that meet another triangle, or the other side of it.
@@ -108,18 +114,10 @@ Result<double> made_rate(const trace::DeviceRayTracer& tracer, const validate::P
     values->resize(std::min(values->size(), fit));
   some.reflectance.clear();
   const float diagonal_m = scene::world_bounds(p.scene).diagonal();
-  std::vector<double> rates;
-  double spent_s = 0;
-  gpu::PieceSize piece = device::kFirstPiece;
-  while (spent_s < kWarmUpSeconds + kMeasuredSeconds || rates.empty()) {
-    LUXEL_TRY(const device::FirstHits hits,
-              device::first_hits(tracer, commands, some, diagonal_m, {kRaysPerElement, 1}, piece));
-    if (spent_s >= kWarmUpSeconds)
-      rates.push_back(double(hits.elements) * kRaysPerElement / hits.seconds);
-    spent_s += hits.seconds;
-  }
-  std::ranges::sort(rates);
-  return rates[rates.size() / 2];
+  LUXEL_TRY(device::FirstHits hits,
+            device::prepare_first_hits(tracer, commands, some, diagonal_m, {kRaysPerElement, 1}));
+  return median_rate(hits.element_count * kRaysPerElement,
+                     [&] { return device::trace_first_hits(tracer, commands, hits); });
 }
 
 /// What one kind of hierarchy makes of a scene's rays.

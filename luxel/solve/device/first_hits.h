@@ -7,31 +7,37 @@
 
 namespace luxel::device {
 
-/// What elements' rays meet, in a device's memory.
+struct FirstHitsParams {
+  uint32_t samples = 64;  ///< rays per element
+  uint64_t seed = 1;
+};
+
+/// Rays of elements and what they meet, in a device's memory.
 struct FirstHits {
-  size_t elements = 0;
-  uint32_t samples = 0;  ///< rays per element
-  gpu::Buffer hits;      ///< trace::DeviceHit, at index_of()
-  double seconds = 0;    ///< that the device took
+  size_t element_count = 0;
+  FirstHitsParams params;
+  gpu::Buffer elements, samples;  ///< Element and PlainCells of shaders/element_rays.glsl
+  gpu::Buffer hits;               ///< trace::DeviceHit, at index_of(); filled by trace_first_hits()
+  gpu::Pipeline pipeline;
+  gpu::PieceSize piece{64};  ///< of groups of 64 rays or a few times as many
 
   /// Of 64 elements after each other: the first ray of each, the second of each and so on. `place`:
   /// in the order of cells, as gather::element_rays() has an element's rays.
   size_t index_of(size_t element, size_t place) const {
-    return (element / 64 * samples + place) * 64 + element % 64;
+    return (element / 64 * params.samples + place) * 64 + element % 64;
   }
 };
 
-struct FirstHitsParams {
-  uint32_t samples = 64;
-  uint64_t seed = 1;
-};
+/// Sends elements to the device and makes room for what their rays will meet. Some elements, and
+/// samples of fewer than 2^32 rays in all. Errors: no memory, the device is lost.
+Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
+                                     const transport::Elements& elements, float diagonal_m,
+                                     const FirstHitsParams& params);
 
-/// Element i sends the rays that gather sends from it, with gather::seed_of_rays(seed, i): the same
-/// up to rounding. `piece` is of groups of 64 rays or so; kFirstPiece where nothing is known.
-/// Errors: no memory, the device is lost.
-inline constexpr gpu::PieceSize kFirstPiece{64};
-Result<FirstHits> first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
-                             const transport::Elements& elements, float diagonal_m,
-                             const FirstHitsParams& params, gpu::PieceSize& piece);
+/// Makes the rays and traces them: element i sends the rays that gather sends from it, with
+/// gather::seed_of_rays(seed, i), the same up to rounding. Returns the seconds that the device
+/// took. Errors: the device is lost.
+Result<double> trace_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
+                                FirstHits& hits);
 
 }  // namespace luxel::device

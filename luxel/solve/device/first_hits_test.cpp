@@ -46,7 +46,7 @@ std::vector<trace::DeviceHit> read_back(const gpu::Device& device, gpu::Commands
 std::vector<Vec3> met_places(const scene::Scene& scene, const FirstHits& hits,
                              std::span<const trace::DeviceHit> values, size_t element) {
   std::vector<Vec3> out;
-  for (size_t k = 0; k < hits.samples; ++k) {
+  for (size_t k = 0; k < hits.params.samples; ++k) {
     const trace::DeviceHit& hit = values[hits.index_of(element, k)];
     EXPECT_NE(hit.number, trace::DeviceHit::kNoTriangle);
     out.push_back(scene::world_position(
@@ -75,10 +75,9 @@ TEST(FirstHits, AreThoseOfTheProcessorsRays) {
     ASSERT_TRUE(tracer);
     for (const uint32_t samples : {32u, 64u, 100u, 128u}) {
       const uint64_t seed = 5;
-      gpu::PieceSize piece = kFirstPiece;
-      const auto hits =
-          first_hits(*tracer, *commands, elements, diagonal_m, {samples, seed}, piece);
+      auto hits = prepare_first_hits(*tracer, *commands, elements, diagonal_m, {samples, seed});
       ASSERT_TRUE(hits) << hits.error().message;
+      ASSERT_TRUE(trace_first_hits(*tracer, *commands, *hits));
       const std::vector<trace::DeviceHit> values = read_back(**device, *commands, hits->hits);
       for (size_t i = 0; i < elements.size(); ++i) {
         std::vector<trace::Ray> rays(samples);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRaysPerElement = 64;
 constexpr double kWarmUpSeconds = 0.3, kMeasuredSeconds = 0.3;
-/// Rays of a scene, at most: enough for a second of a fast device, and for some of a slow one.
+/// Rays of a scene, at most: 4 ms of a fast device, and a second of a slow one.
 constexpr size_t kMostRays = 1u << 24, kMostRaysOfProcessor = 1u << 17;
 /// Elements whose rays of one cell of directions follow each other.
 constexpr size_t kTogether = 64;
@@ -45,7 +45,7 @@ Rays rays_of(const validate::Prepared& p, size_t most) {
                 .subspan((g * kTogether + k) * kRaysPerElement, size_t(kRaysPerElement));
         gather::element_rays(
             trace::offset_origin(p.elements.position[i], p.elements.geometric_normal[i], diagonal),
-            p.elements.normal[i], p.elements.geometric_normal[i], hash64(1 ^ 0x6a7e, i), own);
+            p.elements.normal[i], p.elements.geometric_normal[i], gather::seed_of_rays(1, i), own);
         for (size_t s = 0; s < size_t(kRaysPerElement); ++s)
           out.sorted[(g * size_t(kRaysPerElement) + s) * kTogether + k] = own[s];
       }
@@ -104,7 +104,7 @@ double share_of_other_places(std::span<const trace::Hit> a, std::span<const trac
   return double(others) / double(std::max<size_t>(a.size(), 1));
 }
 
-/// The rate of gather's rays of all elements, made and traced on the device.
+/// The rate of gather's rays of the first elements, as many as fit, made and traced on the device.
 Result<double> made_rate(const trace::DeviceRayTracer& tracer, const validate::Prepared& p,
                          size_t most) {
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(tracer.device()));

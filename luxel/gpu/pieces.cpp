@@ -25,7 +25,9 @@ Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, Piec
     }));
     const double took = std::max(seconds_since(start), 1e-9);
     seconds += took, first += some;
-    size.items = size_t(double(some) * std::min(kMostGrowth, kPieceSeconds / took));
+    // What was cut short says that a piece may be larger only where it took long.
+    const auto next = size_t(double(some) * std::min(kMostGrowth, kPieceSeconds / took));
+    size.items = some < size.items && took < kPieceSeconds ? size.items : next;
   }
   return seconds;
 }

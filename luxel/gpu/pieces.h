@@ -15,9 +15,10 @@ struct PieceSize {
   size_t items = 4096;
 };
 
-/// Calls record(commands, first, count) for pieces of [0, count), one after the other, each of
-/// `most` items at most. Returns the seconds that the device took. Errors: the device is lost.
 using RecordPiece = std::function<void(VkCommandBuffer, size_t first, size_t count)>;
+/// Calls record(commands, first, count) for pieces of [0, count), one after the other, each of
+/// `most` items at most. Returns the seconds until the device was done, as the processor sees them.
+/// What reads the results needs a full_barrier() first. Errors: the device is lost.
 Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, PieceSize& size,
                              const RecordPiece& record);
 

@@ -59,7 +59,7 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
 Result<Supersampled> supersample(const TexelScene& in, const SupersampleParams& params,
                                  DirectLight& direct, Progress& progress);
 
-/// Supersamples those of them that are in `among`, which is in the order of the map.
+/// Supersamples such texels that are in `among`, which is in the order of the map.
 Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t> among,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress);

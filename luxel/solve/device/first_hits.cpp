@@ -51,7 +51,7 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
                                      const FirstHitsParams& params) {
   const size_t n = elements.size(), tiles = (n + kTogether - 1) / kTogether;
   LUXEL_CHECK(n > 0 && params.samples > 0);
-  LUXEL_CHECK(tiles * kTogether * params.samples <= UINT32_MAX);
+  LUXEL_CHECK(tiles * kTogether * params.samples <= uint64_t(INT32_MAX));
   const gpu::Device& device = tracer.device();
   FirstHits out;
   out.element_count = n, out.params = params;

@@ -19,24 +19,24 @@ struct FirstHits {
   gpu::Buffer elements, samples;  ///< Element and PlainCells of shaders/element_rays.glsl
   gpu::Buffer hits;               ///< trace::DeviceHit, at index_of(); filled by trace_first_hits()
   gpu::Pipeline pipeline;
-  gpu::PieceSize piece{64};  ///< of groups of 64 rays or a few times as many
+  gpu::PieceSize piece{64};  ///< of groups: each has the rays of 64 elements in one cell
 
-  /// Of 64 elements after each other: the first ray of each, the second of each and so on. `place`:
-  /// in the order of cells, as gather::element_rays() has an element's rays.
+  /// 64 elements lie after each other: the first ray of each, the second of each and so on.
+  /// `place`: in the order of cells, as gather::element_rays() has an element's rays.
   size_t index_of(size_t element, size_t place) const {
     return (element / 64 * params.samples + place) * 64 + element % 64;
   }
 };
 
 /// Sends elements to the device and makes room for what their rays will meet. Some elements, and
-/// samples of fewer than 2^32 rays in all. Errors: no memory, the device is lost.
+/// fewer than 2^31 rays in all. Errors: no memory, the device is lost.
 Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
                                      const transport::Elements& elements, float diagonal_m,
                                      const FirstHitsParams& params);
 
 /// Makes the rays and traces them: element i sends the rays that gather sends from it, with
-/// gather::seed_of_rays(seed, i), the same up to rounding. Returns the seconds that the device
-/// took. Errors: the device is lost.
+/// gather::seed_of_rays(seed, i), the same up to rounding. Returns the seconds until the
+/// device was done, as the processor sees them. Errors: the device is lost.
 Result<double> trace_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
                                 FirstHits& hits);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
@@ -61,7 +60,8 @@ struct Bin {
 size_t bin_of(const Box3& middles, Vec3 middle, int axis) {
   const float low = at(middles.lower, axis), size = at(middles.upper, axis) - low;
   const float place = (at(middle, axis) - low) / size * float(kBins);
-  return size_t(std::clamp(place, 0.0f, float(kBins - 1)));
+  // Not what is no number, where a scene is larger than floats.
+  return place > 0 ? size_t(std::min(place, float(kBins - 1))) : 0;
 }
 
 Cut best_cut_along(std::span<const Entry> entries, const Bounds& bounds, int axis) {

@@ -18,6 +18,8 @@ namespace luxel::trace {
 namespace {
 
 constexpr size_t kGroup = 64;  // as the shaders have it
+/// Beyond it, products of lengths are no floats.
+constexpr float kLargestScene_m = 1e15f;
 
 struct TracePush {
   DeviceWorld world;
@@ -48,10 +50,16 @@ DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& 
 
 Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
   kind_ = kind;
-  std::vector<DeviceTriangle> triangles = device_triangles(*scene_);
-  if (triangles.size() >= ChildRef::kFirstMask)
+  uint64_t drawn = 0;
+  for (const scene::Instance& i : scene_->instances)
+    drawn += scene_->meshes[i.mesh].triangles.size();
+  if (drawn >= ChildRef::kFirstMask)
     return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
-                ChildRef::kFirstMask - 1, triangles.size());
+                ChildRef::kFirstMask - 1, drawn);
+  if (!(scene::world_bounds(*scene_).diagonal() < kLargestScene_m))
+    return fail(ErrorCode::unsupported, "rays on the device know no scene of more than {} m",
+                kLargestScene_m);
+  std::vector<DeviceTriangle> triangles = device_triangles(*scene_);
   triangle_count_ = triangles.size();
   constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
   SeeThrough open = find_see_through(*scene_, triangles);
@@ -191,7 +199,7 @@ Status DeviceRayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> b
 }
 
 Result<DeviceRays> DeviceRayTracer::upload(std::span<const Ray> rays) {
-  LUXEL_CHECK(!rays.empty() && rays.size() <= UINT32_MAX);
+  LUXEL_CHECK(!rays.empty() && rays.size() <= kMostRays);
   DeviceRays out;
   out.count = rays.size();
   constexpr std::string_view kWhat = "the buffer of rays";

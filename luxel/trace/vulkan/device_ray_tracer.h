@@ -46,7 +46,8 @@ struct DeviceWorld {
 /// `device` and `scene` are kept by reference and must outlive it. One thread at a time uses it.
 class DeviceRayTracer {
  public:
-  /// Errors: 2^28 - 1 triangles or more (ErrorCode::unsupported), no memory, the device is lost.
+  /// Errors: 2^28 - 1 triangles or more, or a scene of 10^15 m (ErrorCode::unsupported), no memory,
+  /// the device is lost.
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
                                        HierarchyKind kind);
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene) {
@@ -56,12 +57,14 @@ class DeviceRayTracer {
   /// hits[i] is what rays[i] meets first. Sizes are equal. They go to the device and back in parts
   /// of at most kRaysAtATime. Errors: no memory, the device is lost.
   Status closest_hits(std::span<const Ray> rays, std::span<Hit> hits);
-  /// blocked[i] is 1 when anything lies on rays[i] within (t_min, t_max). Errors: as above.
+  /// blocked[i] is 1 when anything lies on rays[i] within [t_min, t_max]. Errors: as above.
   Status occluded(std::span<const Ray> rays, std::span<uint8_t> blocked);
 
-  /// Puts rays into the device's memory. Errors: no memory, the device is lost.
+  /// Puts some rays into the device's memory, kMostRays at most. Errors: no memory, the device is
+  /// lost.
   Result<DeviceRays> upload(std::span<const Ray> rays);
-  /// Fills rays.hits; returns the seconds that the device took. Errors: the device is lost.
+  /// Fills rays.hits; returns the seconds until the device was done, as the processor sees them.
+  /// Errors: the device is lost.
   Result<double> closest_hits(DeviceRays& rays);
 
   /// For shaders that trace rays themselves: they include shaders/binary.glsl or shaders/wide.glsl,
@@ -74,6 +77,7 @@ class DeviceRayTracer {
   uint64_t bytes() const { return nodes_.size + triangles_.size; }
 
   static constexpr size_t kRaysAtATime = 1u << 20;
+  static constexpr size_t kMostRays = 1u << 29;  ///< whose numbers shaders can double
 
  private:
   DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene, gpu::Commands commands);

@@ -130,8 +130,8 @@ TEST_P(DeviceRays, DoNotSlipThroughAClosedSurface) {
   }
 }
 
-// Of a quad that stands mirrored, of a sheet with two sides, and of ends of rays, as RayTracer's
-// own tests have it.
+// A quad that stands mirrored, a sheet with two sides, and ends of rays, as in RayTracer's own
+// tests.
 TEST_P(DeviceRays, KnowSidesAndEnds) {
   for (const float side : {1.0f, -1.0f}) {
     scene::Scene scene = quad_scene(scaling({side, 1, 1}));

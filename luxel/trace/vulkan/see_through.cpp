@@ -36,15 +36,24 @@ class Pictures {
   std::vector<uint32_t> first_;  ///< per texture
 };
 
-/// NaN where the mesh has no coordinates for the texture, which then is 1.
+const std::vector<Vec2>& coordinates(const scene::Mesh& mesh, const scene::TextureRef& ref) {
+  return ref.uv_set == 1 ? mesh.uv1 : mesh.uv0;
+}
+
 std::array<Vec2, 3> places(const scene::Mesh& mesh, uint32_t triangle,
                            const scene::TextureRef& ref) {
-  const std::vector<Vec2>& uv = ref.uv_set == 1 ? mesh.uv1 : mesh.uv0;
-  std::array<Vec2, 3> out;
+  const std::vector<Vec2>& uv = coordinates(mesh, ref);
+  std::array<Vec2, 3> out{};
+  if (uv.empty()) return out;
   for (size_t k = 0; k < 3; ++k)
-    out[k] =
-        uv.empty() ? Vec2{NAN, NAN} : scene::transformed_uv(ref, uv[mesh.triangles[triangle][k]]);
+    out[k] = scene::transformed_uv(ref, uv[mesh.triangles[triangle][k]]);
   return out;
+}
+
+uint32_t placed(const scene::Mesh& mesh, const scene::Material& m) {
+  return uint32_t(!coordinates(mesh, m.base_color_texture).empty()) |
+         uint32_t(!coordinates(mesh, m.metallic_texture).empty()) << 1 |
+         uint32_t(!coordinates(mesh, m.transmission_texture).empty()) << 2;
 }
 
 }  // namespace
@@ -68,7 +77,7 @@ SeeThrough find_see_through(const scene::Scene& scene, std::vector<DeviceTriangl
                                pictures.picture(m.metallic_texture),
                                pictures.picture(m.transmission_texture)});
     }
-    out.triangles.push_back({drawn.instance, drawn.triangle, there,
+    out.triangles.push_back({drawn.instance, drawn.triangle, there, placed(mesh, m),
                              places(mesh, drawn.triangle, m.base_color_texture),
                              places(mesh, drawn.triangle, m.metallic_texture),
                              places(mesh, drawn.triangle, m.transmission_texture)});

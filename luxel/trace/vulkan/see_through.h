@@ -30,9 +30,10 @@ static_assert(sizeof(SeeThroughMaterial) == 92);
 struct SeeThroughTriangle {
   uint32_t instance = 0, triangle = 0;
   uint32_t material = 0;  ///< into SeeThrough::materials
+  uint32_t placed = 0;    ///< bits 0 to 2: whether the mesh has coordinates for base, metal, glass
   std::array<Vec2, 3> base, metal, glass;
 };
-static_assert(sizeof(SeeThroughTriangle) == 84);
+static_assert(sizeof(SeeThroughTriangle) == 88);
 
 struct SeeThrough {
   std::vector<SeeThroughMaterial> materials;

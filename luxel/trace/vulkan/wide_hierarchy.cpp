@@ -68,7 +68,7 @@ std::array<size_t, kSlots> slots_of(std::span<const Child> children, Vec3 middle
   return out;
 }
 
-/// The smallest power of two of which 255 span `extent`, + 127.
+/// A power of two of which 255 span `extent`, less than four times too large; + 127.
 uint8_t exponent_for(float extent) {
   int e = 0;
   std::frexp(std::max(extent, 1e-30f) / 255, &e);  // < 2^e
@@ -86,14 +86,14 @@ Steps steps_of(float lower, float upper, float origin, uint8_t exponent) {
           whole(std::ceil((double(upper) - double(origin)) / unit))};
 }
 
-/// Fills a node but for its inner children's place, which is `first_node`; appends those to `todo`
-/// and the triangles of its leaves.
+/// Makes wide nodes one after the other, the root first.
 struct Maker {
   const BinaryHierarchy& binary;
   float margin_m;  ///< by which boxes grow
   WideHierarchy out{};
   std::deque<uint32_t> todo{};  ///< binary nodes of the wide ones to come, in their order
 
+  /// Appends a node and the triangles of its leaves; its inner children go to the end of `todo`.
   void make(uint32_t binary_node);
   void set_box(WideNode& node, size_t slot, const Box3& box) const;
   void set_leaf(WideNode& node, size_t slot, uint32_t ref);
@@ -146,12 +146,18 @@ void Maker::make(uint32_t binary_node) {
   out.nodes.push_back(node);
 }
 
+/// The largest coordinate of a box, without its sign.
+float farthest(const Box3& box) {
+  return std::max(max_component(max(box.lower, -box.lower)),
+                  max_component(max(box.upper, -box.upper)));
+}
+
 }  // namespace
 
 WideHierarchy widen(const BinaryHierarchy& binary) {
   Box3 all;
-  for (const BinaryNode& node : binary.nodes) all.extend(node.lower0), all.extend(node.upper0);
-  Maker maker{binary, 0x1p-20f * all.diagonal()};
+  all.extend(binary.nodes[0].lower0), all.extend(binary.nodes[0].upper0);
+  Maker maker{binary, 0x1p-20f * (all.diagonal() + farthest(all))};
   maker.out.nodes.reserve(binary.nodes.size() / 4 + 1);
   maker.out.triangles.reserve(binary.triangles.size());
   maker.make(0);

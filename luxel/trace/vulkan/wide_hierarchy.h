@@ -31,8 +31,8 @@ struct WideHierarchy {
 
 /// Joins nodes of a binary hierarchy whose leaves have at most WideNode::kMostInLeaf triangles: of
 /// a node's children the one with the largest box is taken apart, until there are eight
-/// [Wald08]; the paper finds the best ones of all. Boxes grow by 2^-20 of the scene's diagonal,
-/// more than what rounding moves a ray by on its way to them.
+/// [Wald08]; the paper finds the best ones of all. Boxes grow by 2^-20 of the scene's diagonal and
+/// its largest coordinate, more than what rounding moves a ray by that begins in the scene.
 WideHierarchy widen(const BinaryHierarchy& binary);
 
 }  // namespace luxel::trace

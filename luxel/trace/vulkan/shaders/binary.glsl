@@ -9,7 +9,7 @@ vec2 span_in_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse, float t_min,
   vec3 a = (lower - origin) * inverse, b = (upper - origin) * inverse;
   vec3 near = min(a, b), far = max(a, b);
   return vec2(max(max(near.x, near.y), max(near.z, t_min)),
-              min(min(min(far.x, far.y), far.z) * 1.0000004, t_max));
+              min(min(min(far.x, far.y), far.z) * kWider, t_max));
 }
 
 // The first triangle along the ray; with `any`, whichever is found first.

@@ -4,6 +4,10 @@
 
 layout(constant_id = 0) const bool kSomeLetLightThrough = true;
 
+// What the far end of a box is widened by, so that rounding misses none that a ray meets [Ize13].
+// The reciprocal may be off by 2.5 units in the last place, as Vulkan allows.
+const float kWider = 1.000001;
+
 const uint kNoTriangle = 0xffffffffu;
 const uint kBackFace = 1u << 31;
 const int kMaxDepth = 64;

@@ -15,6 +15,7 @@ struct SeeThroughMaterial {
 };
 struct SeeThroughTriangle {
   uint instance, triangle, material;
+  uint placed;  // bits 0 to 2: base, metal, glass
   vec2 base[3], metal[3], glass[3];
 };
 layout(buffer_reference, scalar) readonly buffer SeeThroughMaterials { SeeThroughMaterial at[]; };
@@ -64,8 +65,8 @@ float chance_of(vec3 origin, vec3 direction, uint instance, uint triangle) {
 int wrapped(int i, int n, uint wrap) {
   if (wrap == kClamp) return clamp(i, 0, n - 1);
   int period = wrap == kMirror ? 2 * n : n;
-  int j = i % period;
-  j += j < 0 ? period : 0;
+  // The remainder of negative numbers is undefined.
+  int j = i >= 0 ? i % period : period - 1 - (-1 - i) % period;
   return j < n ? j : period - 1 - j;
 }
 
@@ -76,8 +77,8 @@ float channel_of(Texels texels, Picture p, int x, int y, int channel) {
 }
 
 // A channel of a picture, between the places of a triangle's corners; 1 without picture or places.
-float picture_at(Texels texels, Picture p, vec2 places[3], vec2 uv, int channel) {
-  if (p.width == 0 || isnan(places[0].x)) return 1;
+float picture_at(Texels texels, Picture p, bool has_places, vec2 places[3], vec2 uv, int channel) {
+  if (p.width == 0 || !has_places) return 1;
   vec2 at = (1 - uv.x - uv.y) * places[0] + uv.x * places[1] + uv.y * places[2];
   at = mix(clamp(at, vec2(-1e6), vec2(1e6)), vec2(0), bvec2(isnan(at.x) || isinf(at.x), isnan(at.y) || isinf(at.y)));
   at *= vec2(p.width, p.height);
@@ -93,12 +94,12 @@ float picture_at(Texels texels, Picture p, vec2 places[3], vec2 uv, int channel)
 float coverage_at(SeeThrough s, uint number, vec2 uv) {
   SeeThroughTriangle t = s.triangles.at[number];
   SeeThroughMaterial m = s.materials.at[t.material];
-  float alpha = picture_at(s.texels, m.base, t.base, uv, 3) * m.alpha;
+  float alpha = picture_at(s.texels, m.base, (t.placed & 1u) != 0, t.base, uv, 3) * m.alpha;
   if (m.mode == kMask && alpha < m.cutoff) return 0;
   float coverage = m.mode == kBlend ? clamp(alpha, 0.0, 1.0) : 1.0;
   if (m.transmission > 0) {
-    float metal = clamp(m.metallic * picture_at(s.texels, m.metal, t.metal, uv, 2), 0.0, 1.0);
-    float through = m.transmission * (1 - metal) * picture_at(s.texels, m.glass, t.glass, uv, 0);
+    float metal = clamp(m.metallic * picture_at(s.texels, m.metal, (t.placed & 2u) != 0, t.metal, uv, 2), 0.0, 1.0);
+    float through = m.transmission * (1 - metal) * picture_at(s.texels, m.glass, (t.placed & 4u) != 0, t.glass, uv, 0);
     float open = 1 - coverage, glass = coverage * clamp(through, 0.0, 1.0);
     coverage = 1 - open - glass;
   }

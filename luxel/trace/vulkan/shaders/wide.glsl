@@ -25,7 +25,7 @@ uint meet_half(uint meta, uint flip, uvec3 near, uvec3 far, vec3 unit, vec3 star
     vec3 a = vec3(byte_of(near.x, k), byte_of(near.y, k), byte_of(near.z, k)) * unit + start;
     vec3 b = vec3(byte_of(far.x, k), byte_of(far.y, k), byte_of(far.z, k)) * unit + start;
     float from = max(max(a.x, a.y), max(a.z, t_min));
-    float to = min(min(min(b.x, b.y), b.z) * 1.0000004, t_max);
+    float to = min(min(min(b.x, b.y), b.z) * kWider, t_max);
     if (from <= to)
       bits |= bitfieldExtract(ones, 8 * k, 8) << bitfieldExtract(place, 8 * k, 8);
   }

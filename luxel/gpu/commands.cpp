@@ -105,16 +105,22 @@ void full_barrier(const Device& device, VkCommandBuffer commands) {
   device.vk.vkCmdPipelineBarrier2KHR(commands, &info);
 }
 
+Status copy_bytes(Commands& commands, const Buffer& from, const Buffer& to, VkDeviceSize bytes) {
+  const Device& device = commands.device();
+  return commands.run([&](VkCommandBuffer c) {
+    const VkBufferCopy some{0, 0, bytes};
+    full_barrier(device, c);
+    device.vk.vkCmdCopyBuffer(c, from.buffer.get(), to.buffer.get(), 1, &some);
+    full_barrier(device, c);
+  });
+}
+
 Result<Buffer> uploaded(Commands& commands, std::span<const std::byte> bytes,
                         std::string_view what) {
   const Device& device = commands.device();
   LUXEL_TRY(const Buffer sent, buffer_with(device, bytes, what));
   LUXEL_TRY(Buffer out, make_buffer(device, bytes.size(), Access::device, what));
-  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {
-    const VkBufferCopy all{0, 0, bytes.size()};
-    device.vk.vkCmdCopyBuffer(c, sent.buffer.get(), out.buffer.get(), 1, &all);
-    full_barrier(device, c);
-  }));
+  LUXEL_TRY_STATUS(copy_bytes(commands, sent, out, bytes.size()));
   return out;
 }
 

@@ -56,6 +56,10 @@ class Commands {
 /// fast as anything for the few passes of a frame.
 void full_barrier(const Device& device, VkCommandBuffer commands);
 
+/// Copies the first `bytes` of a buffer, after all that came before; all that comes after sees
+/// them. Errors: the device is lost.
+Status copy_bytes(Commands& commands, const Buffer& from, const Buffer& to, VkDeviceSize bytes);
+
 /// A buffer of the device's own memory with these bytes, which shaders read faster than one that
 /// the processor writes. Not empty. Errors: no memory, the device is lost.
 Result<Buffer> uploaded(Commands& commands, std::span<const std::byte> bytes,

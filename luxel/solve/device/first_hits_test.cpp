@@ -33,12 +33,7 @@ std::vector<trace::DeviceHit> read_back(const gpu::Device& device, gpu::Commands
                                         const gpu::Buffer& from) {
   const auto to = gpu::make_buffer(device, from.size, gpu::Access::to_host, "hits");
   EXPECT_TRUE(to);
-  EXPECT_TRUE(commands.run([&](VkCommandBuffer c) {
-    const VkBufferCopy all{0, 0, from.size};
-    gpu::full_barrier(device, c);
-    device.vk.vkCmdCopyBuffer(c, from.buffer.get(), to->buffer.get(), 1, &all);
-    gpu::full_barrier(device, c);
-  }));
+  EXPECT_TRUE(gpu::copy_bytes(commands, from, *to, from.size));
   std::vector<trace::DeviceHit> out(from.size / sizeof(trace::DeviceHit));
   std::memcpy(out.data(), to->mapped, from.size);
   return out;

@@ -119,15 +119,6 @@ Result<double> DeviceRayTracer::dispatch(const gpu::Pipeline& pipeline, VkDevice
       });
 }
 
-Status DeviceRayTracer::copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes) {
-  return commands_.run([&](VkCommandBuffer c) {
-    const VkBufferCopy some{0, 0, bytes};
-    gpu::full_barrier(*device_, c);
-    device_->vk.vkCmdCopyBuffer(c, from.buffer.get(), to.buffer.get(), 1, &some);
-    gpu::full_barrier(*device_, c);
-  });
-}
-
 Status DeviceRayTracer::make_room(size_t count) {
   if (room_.count >= count) return {};
   room_ = {}, sent_ = {}, answered_ = {};
@@ -170,10 +161,10 @@ Status DeviceRayTracer::trace_parts(const gpu::Pipeline& pipeline, size_t bytes_
     const size_t count = std::min(kRaysAtATime, rays.size() - first);
     LUXEL_TRY_STATUS(make_room(count));
     std::memcpy(sent_.mapped, rays.data() + first, count * sizeof(Ray));
-    LUXEL_TRY_STATUS(copy(sent_, room_.rays, count * sizeof(Ray)));
+    LUXEL_TRY_STATUS(gpu::copy_bytes(commands_, sent_, room_.rays, count * sizeof(Ray)));
     LUXEL_TRY([[maybe_unused]] const double seconds,
               dispatch(pipeline, room_.rays.address, room_.hits.address, count));
-    LUXEL_TRY_STATUS(copy(room_.hits, answered_, count * bytes_per_answer));
+    LUXEL_TRY_STATUS(gpu::copy_bytes(commands_, room_.hits, answered_, count * bytes_per_answer));
     at_part(first, count);
   }
   return {};

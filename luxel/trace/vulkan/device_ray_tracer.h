@@ -74,7 +74,6 @@ class DeviceRayTracer {
   bool lets_light_through() const { return lets_light_through_; }
   const gpu::Device& device() const { return *device_; }
   size_t triangles() const { return triangle_count_; }
-  uint64_t bytes() const { return nodes_.size + triangles_.size; }
 
   static constexpr size_t kRaysAtATime = 1u << 20;
   static constexpr size_t kMostRays = 1u << 29;  ///< whose numbers shaders can double
@@ -90,7 +89,6 @@ class DeviceRayTracer {
   Status trace_parts(const gpu::Pipeline& pipeline, size_t bytes_per_answer,
                      std::span<const Ray> rays, const AtPart& at_part);
   Status make_room(size_t count);
-  Status copy(const gpu::Buffer& from, const gpu::Buffer& to, size_t bytes);
 
   const gpu::Device* device_;
   const scene::Scene* scene_;

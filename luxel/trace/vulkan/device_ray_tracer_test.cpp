@@ -202,7 +202,7 @@ scene::Scene see_through_scene() {
   return scene;
 }
 
-// The same rays pass on both: the same texels are looked up, and the same numbers drawn. A few lie
+// Both let the same rays pass: the same texels are looked up, and the same numbers drawn. A few lie
 // within rounding of a mask's edge, of an unfiltered texel's, or of the number drawn.
 TEST_P(DeviceRays, PassSurfacesByTheSameChance) {
   const scene::Scene scene = see_through_scene();

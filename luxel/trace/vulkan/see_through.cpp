@@ -1,5 +1,6 @@
 #include "luxel/trace/vulkan/see_through.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "luxel/scene/drawn_triangle.h"
@@ -60,6 +61,7 @@ uint32_t placed(const scene::Mesh& mesh, const scene::Material& m) {
 
 SeeThrough find_see_through(const scene::Scene& scene, std::vector<DeviceTriangle>& triangles) {
   SeeThrough out;
+  if (std::ranges::none_of(scene.materials, scene::lets_light_through)) return out;
   Pictures pictures(scene, out.texels);
   std::vector<uint32_t> material_there(scene.materials.size(), scene::kNone);
   const std::vector<uint32_t> first = scene::first_triangles(scene);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "luxel/gpu/device_test_support.h"
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/shaders/test_double.comp.h"
 #include "luxel/gpu/shaders/test_triangle.frag.h"
@@ -28,24 +29,8 @@ DeviceParams named(std::string name) {
   return params;
 }
 
-/// Opens a device with the validation layer, and sees that the layer had nothing to say.
-class Gpu : public ::testing::Test {
+class Gpu : public testing::OnDevice {
  protected:
-  void SetUp() override {
-    auto opened = Device::open(validated());
-    if (!opened) GTEST_SKIP() << opened.error().message;
-    device_ = std::move(*opened);
-    auto commands = Commands::make(*device_);
-    ASSERT_TRUE(commands) << commands.error().message;
-    commands_.emplace(std::move(*commands));
-  }
-  void TearDown() override {
-    commands_.reset();
-    if (device_) {
-      EXPECT_THAT(device_->messages(), IsEmpty());
-    }
-  }
-
   /// An opaque picture of one colour.
   Picture picture_of(std::array<uint8_t, 4> rgba, uint32_t width, uint32_t height) {
     std::vector<std::byte> pixels(4 * size_t(width) * height);
@@ -56,9 +41,6 @@ class Gpu : public ::testing::Test {
     EXPECT_TRUE(picture) << picture.error().message;
     return std::move(*picture);
   }
-
-  std::unique_ptr<Device> device_;
-  std::optional<Commands> commands_;
 };
 
 TEST_F(Gpu, ComputesOnABuffer) {

@@ -7,12 +7,11 @@
 
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/gpu/device_test_support.h"
 #include "luxel/scene/procedural.h"
 
 namespace luxel::device {
 namespace {
-
-using ::testing::IsEmpty;
 
 /// Elements on the unit sphere, some of whose normals are bent.
 transport::Elements elements_on_sphere(size_t count) {
@@ -52,30 +51,26 @@ std::vector<Vec3> met_places(const scene::Scene& scene, const FirstHits& hits,
   return out;
 }
 
+using FirstHitsOnDevice = gpu::testing::OnDevice;
+
 // 10^5 rays from a small sphere to a large one around it. The number of samples is that of cells, a
 // multiple, less, and no multiple. Directions agree to some roundings of the square root that tells
 // how far they lean, which are largest near the pole: 10^-4 of the way.
-TEST(FirstHits, AreThoseOfTheProcessorsRays) {
-  gpu::DeviceParams opened;
-  opened.validate = true;
-  const auto device = gpu::Device::open(opened);
-  if (!device) GTEST_SKIP() << device.error().message;
-  auto commands = gpu::Commands::make(**device);
-  ASSERT_TRUE(commands);
+TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
   const scene::Scene scene = scene::inward_sphere(10, 4, {0.5f, 0.5f, 0.5f}, {});
   const transport::Elements elements = elements_on_sphere(350);  // no multiple of 64
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   const auto embree = trace::RayTracer::build(scene);
   for (const trace::HierarchyKind kind :
        {trace::HierarchyKind::binary, trace::HierarchyKind::wide}) {
-    const auto tracer = trace::DeviceRayTracer::build(**device, scene, kind);
+    const auto tracer = trace::DeviceRayTracer::build(*device_, scene, kind);
     ASSERT_TRUE(tracer);
     for (const uint32_t samples : {32u, 64u, 100u, 128u}) {
       const uint64_t seed = 5;
-      auto hits = prepare_first_hits(*tracer, *commands, elements, diagonal_m, {samples, seed});
+      auto hits = prepare_first_hits(*tracer, *commands_, elements, diagonal_m, {samples, seed});
       ASSERT_TRUE(hits) << hits.error().message;
-      ASSERT_TRUE(trace_first_hits(*tracer, *commands, *hits));
-      const std::vector<trace::DeviceHit> values = read_back(**device, *commands, hits->hits);
+      ASSERT_TRUE(trace_first_hits(*tracer, *commands_, *hits));
+      const std::vector<trace::DeviceHit> values = read_back(*device_, *commands_, hits->hits);
       for (size_t i = 0; i < elements.size(); ++i) {
         std::vector<trace::Ray> rays(samples);
         gather::element_rays(
@@ -90,7 +85,6 @@ TEST(FirstHits, AreThoseOfTheProcessorsRays) {
       }
     }
   }
-  EXPECT_THAT((*device)->messages(), IsEmpty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/gpu/device_test_support.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/sides.h"
 
@@ -13,28 +14,14 @@ namespace {
 
 using ::testing::IsEmpty;
 
-class DeviceRays : public ::testing::TestWithParam<HierarchyKind> {
+class DeviceRays : public gpu::testing::OnDevice,
+                   public ::testing::WithParamInterface<HierarchyKind> {
  protected:
-  void SetUp() override {
-    gpu::DeviceParams params;
-    params.validate = true;
-    auto opened = gpu::Device::open(params);
-    if (!opened) GTEST_SKIP() << opened.error().message;
-    device_ = std::move(*opened);
-  }
-  void TearDown() override {
-    if (device_) {
-      EXPECT_THAT(device_->messages(), IsEmpty());
-    }
-  }
-
   DeviceRayTracer built(const scene::Scene& scene) {
     auto tracer = DeviceRayTracer::build(*device_, scene, GetParam());
     EXPECT_TRUE(tracer) << tracer.error().message;
     return std::move(*tracer);
   }
-
-  std::unique_ptr<gpu::Device> device_;
 };
 
 std::vector<Hit> hits_of(DeviceRayTracer& tracer, std::span<const Ray> rays) {

@@ -193,5 +193,32 @@ TEST(NearPaths, BringTheLightOfWhereTheyEnd) {
   }
 }
 
+// A small floor under a wide double-sided plate, whose back sends it the light of the sky below. A
+// small square between them shows its back, which is dark: it takes its own part of that light, and
+// no more.
+TEST(NearPaths, ADarkBackTakesOnlyItsOwnPartOfTheLightOfALitOne) {
+  const auto mean_of_floor = [](bool with_square) {
+    scene::Scene scene;
+    scene.background = {1, 1, 1};
+    const uint32_t gray = scene::add_material(scene, "gray", {0.8f, 0.8f, 0.8f}, {});
+    const uint32_t leaf = scene::add_material(scene, "leaf", {0.8f, 0.8f, 0.8f}, {});
+    scene.materials[leaf].double_sided = true;
+    scene::add_rectangle(scene, {-0.2f, 0.2f, -0.2f, 0.2f}, 0, true, gray);
+    scene::add_rectangle(scene, {-2, 2, -2, 2}, 1, true, leaf);
+    if (with_square) scene::add_rectangle(scene, {-0.1f, 0.1f, -0.1f, 0.1f}, 0.5f, true, gray);
+    const Lit lit = solve(std::move(scene), 32, 64);
+    double sum = 0;
+    int count = 0;
+    for (size_t i = 0; i < lit.elements.size(); ++i) {
+      if (lit.elements.position[i].y > 0.1f) continue;
+      sum += double(lit.light.irradiance[i].x), ++count;
+    }
+    EXPECT_GT(count, 5);
+    return sum / count;
+  };
+  // The square's form factor is 0.04 / (0.25 pi) = 0.05. Noise: 0.02.
+  EXPECT_NEAR(mean_of_floor(true) / mean_of_floor(false), 0.95, 0.04);
+}
+
 }  // namespace
 }  // namespace luxel::gather

@@ -126,8 +126,8 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayBuffers& bu
     trace_all(tracer, buffers);
     sort_rays(ray_scene, buffers, i, samples, out, tile.rays_met);
   }
-  drop_enclosed_paths(i, buffers, out);
   if (!is_guided(out, i)) out.counted[i] = out.samples[i];
+  drop_enclosed_paths(i, buffers, out);
   tile.kept += before ? samples.count() - traced : 0;
   tile.rays += traced;
 }

@@ -105,25 +105,40 @@ LightAt sum_of(std::span<const Source> sources) {
   return out;
 }
 
+/// The light of receivers at which `aim` aims, one after the other.
+template <class Aim>
+void light_at(const trace::RayTracer& tracer, std::span<const Receiver> receivers,
+              ShadowRayBatch& batch, std::span<LightAt> out, const Aim& aim) {
+  LUXEL_CHECK(out.size() == receivers.size());
+  clear(batch);
+  for (const Receiver& r : receivers) {
+    aim(r);
+    batch.sources_end.push_back(batch.sources.size());
+  }
+  trace_batch(tracer, batch);
+  const std::span<const Source> sources = batch.sources;
+  for (size_t i = 0, begin = 0; i < out.size(); begin = batch.sources_end[i++])
+    out[i] = sum_of(sources.subspan(begin, batch.sources_end[i] - begin));
+}
+
 }  // namespace
 
 void direct_light_at(const DirectScene& lit, const DirectParams& params,
                      std::span<const Receiver> receivers, ShadowRayBatch& batch,
                      std::span<LightAt> out) {
   const Lights& lights = lit.lights;
-  LUXEL_CHECK(out.size() == receivers.size());
-  clear(batch);
-  for (const Receiver& r : receivers) {
+  light_at(lit.tracer, receivers, batch, out, [&](const Receiver& r) {
     aim_at_triangles(lit, params.samples, r, batch);
     aim_at_punctual_lights(lights, params.samples, r, batch);
     aim_at_bright_texels(lit.scene, lights.around, params.samples, r, batch);
     aim_at_soft_sky(lit.scene, lights.around, params.sky_samples, r, batch);
-    batch.sources_end.push_back(batch.sources.size());
-  }
-  trace_batch(lit.tracer, batch);
-  const std::span<const Source> sources = batch.sources;
-  for (size_t i = 0, begin = 0; i < out.size(); begin = batch.sources_end[i++])
-    out[i] = sum_of(sources.subspan(begin, batch.sources_end[i] - begin));
+  });
+}
+
+void punctual_light_at(const DirectScene& lit, int samples, std::span<const Receiver> receivers,
+                       ShadowRayBatch& batch, std::span<LightAt> out) {
+  light_at(lit.tracer, receivers, batch, out,
+           [&](const Receiver& r) { aim_at_punctual_lights(lit.lights, samples, r, batch); });
 }
 
 void add_light_by_layer(const ShadowRayBatch& batch, size_t receiver, const LightLayers& layers,

@@ -115,6 +115,10 @@ void direct_light_at(const DirectScene& lit, const DirectParams& params,
                      std::span<const Receiver> receivers, ShadowRayBatch& batch,
                      std::span<LightAt> out);
 
+/// That of punctual lights alone, with so many rays for each sun disc.
+void punctual_light_at(const DirectScene& lit, int samples, std::span<const Receiver> receivers,
+                       ShadowRayBatch& batch, std::span<LightAt> out);
+
 /// Direct light at one receiver.
 LightAt direct_light_at(const DirectScene& lit, const DirectParams& params, const Receiver& r,
                         ShadowRayBatch& batch);

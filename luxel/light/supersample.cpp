@@ -70,8 +70,9 @@ int samples_per_point(int samples) { return std::max(std::min(samples, 8), sampl
 
 /// Points of a texel at a chart's border, when it is asked whether light varies.
 constexpr int kBorderPoints = 8;
-/// Points of a texel where a fleck of sun may be, which can be small.
-constexpr int kFleckPoints = 16;
+/// Points of a texel where a fleck of sun may be, which can be small; and rays towards a sun's disc
+/// that tell whether its sample lies in light, in shadow or between the two.
+constexpr int kFleckPoints = 16, kRaysOfSample = 8;
 
 /// Buffers of one thread.
 struct PointBuffers {
@@ -82,15 +83,20 @@ struct PointBuffers {
   ShadowRayBatch batch;
 };
 
+/// Makes work.receivers of work.spread, the points of texel `i`, and room for their light.
+void receive_at_points(const PointScene& place, uint64_t seed, size_t i, PointBuffers& work) {
+  work.receivers.clear();
+  for (const scene::SurfacePoint& p : work.spread) {
+    const uint64_t own = hash64(hash64(seed, kPointSeed + work.receivers.size()), i);
+    work.receivers.push_back(receiver_at(place, transport::smooth_point(place.scene, p), own));
+  }
+  work.light.resize(work.receivers.size());
+}
+
 /// The direct light at work.spread, the points of texel `i`.
 void light_points(const PointScene& place, const Lights& lights, const DirectParams& each, size_t i,
                   PointBuffers& work) {
-  work.receivers.clear();
-  for (const scene::SurfacePoint& p : work.spread) {
-    const uint64_t seed = hash64(hash64(each.seed, kPointSeed + work.receivers.size()), i);
-    work.receivers.push_back(receiver_at(place, transport::smooth_point(place.scene, p), seed));
-  }
-  work.light.resize(work.receivers.size());
+  receive_at_points(place, each.seed, i, work);
   direct_light_at({place.scene, lights, place.tracer, place.diagonal_m}, each, work.receivers,
                   work.batch, work.light);
 }
@@ -196,15 +202,12 @@ void keep_marked(std::span<const uint8_t> marked, std::vector<uint32_t>& which) 
   which.resize(kept);
 }
 
-/// Keeps those of `which` whose light differs at some of a few points. Where a chart ends there is
-/// no neighbour who would tell of a shadow's edge. Returns the number of rays.
-Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& params, int points,
-                             const DirectLight& direct, std::vector<uint32_t>& which,
-                             Progress& progress) {
+/// Keeps the texels of `which` for which is_uneven(texel, cover, work, traced) says so, and adds
+/// its rays to `traced`. Returns the number of rays.
+template <class IsUneven>
+Result<uint64_t> keep_uneven(const TexelScene& in, std::vector<uint32_t>& which, Progress& progress,
+                             const IsUneven& is_uneven) {
   const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
-  const PointScene place = point_scene(in);
-  DirectParams each = params.direct;
-  each.samples = samples_per_point(params.direct.samples);
   std::atomic<uint64_t> rays{0};
   std::vector<uint8_t> uneven(which.size());
   progress.begin("supersample", which.size());
@@ -212,22 +215,70 @@ Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& para
     if (progress.cancelled()) return;
     PointBuffers work;
     uint64_t traced = 0;
-    for (size_t k = begin; k < end; ++k) {
-      const uint32_t i = which[k];
-      atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), points, each.seed, work.spread);
-      light_points(place, in.lights, each, i, work);
-      traced += work.batch.rays.size();
-      for (const LightAt& l : work.light)
-        if (differ({l.irradiance, l.variance}, {direct.irradiance[i], direct.variance[i]},
-                   params.threshold))
-          uneven[k] = 1;
-    }
+    for (size_t k = begin; k < end; ++k) uneven[k] = is_uneven(which[k], cover.of(k), work, traced);
     rays += traced;
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
   keep_marked(uneven, which);
   return uint64_t(rays);
+}
+
+/// Keeps those of `which` whose light differs at some of a few points. Where a chart ends there is
+/// no neighbour who would tell of a shadow's edge. Returns the number of rays.
+Result<uint64_t> keep_uneven_at_borders(const TexelScene& in, const SupersampleParams& params,
+                                        const DirectLight& direct, std::vector<uint32_t>& which,
+                                        Progress& progress) {
+  const PointScene place = point_scene(in);
+  DirectParams each = params.direct;
+  each.samples = samples_per_point(params.direct.samples);
+  return keep_uneven(in, which, progress,
+                     [&](uint32_t i, const auto& cover, PointBuffers& work, uint64_t& traced) {
+                       atlas::spread_points(in.atlas, in.map.texels[i], cover, kBorderPoints,
+                                            each.seed, work.spread);
+                       light_points(place, in.lights, each, i, work);
+                       traced += work.batch.rays.size();
+                       return std::ranges::any_of(work.light, [&](const LightAt& l) {
+                         return differ({l.irradiance, l.variance},
+                                       {direct.irradiance[i], direct.variance[i]},
+                                       params.threshold);
+                       });
+                     });
+}
+
+/// Keeps those of `which` in which some points are in the light of a punctual light and others are
+/// not: a ray each tells. A texel whose sample lies in a penumbra is not asked, as its neighbours
+/// tell, and one ray does not; nor one under so many lamps that some stand for others. Returns the
+/// number of rays.
+Result<uint64_t> keep_flecked(const TexelScene& in, const SupersampleParams& params,
+                              const DirectLight& direct, std::vector<uint32_t>& which,
+                              Progress& progress) {
+  const PointScene place = point_scene(in);
+  const DirectScene lit{in.scene, in.lights, in.tracer, place.diagonal_m};
+  const uint64_t seed = params.direct.seed;
+  return keep_uneven(
+      in, which, progress,
+      [&](uint32_t i, const auto& cover, PointBuffers& work, uint64_t& traced) {
+        atlas::spread_points(in.atlas, in.map.texels[i], cover, kFleckPoints, seed, work.spread);
+        receive_at_points(place, seed, i, work);
+        work.receivers.push_back(own_receiver(place, in.elements, i));
+        work.light.emplace_back();
+        punctual_light_at(lit, 1, work.receivers, work.batch, work.light);
+        traced += work.batch.rays.size();
+        const auto any_differs = [&](Rgb from, Rgb others) {
+          return std::ranges::any_of(work.light, [&](const LightAt& l) {
+            return differ({others + l.irradiance, 0}, {others + from, 0}, params.threshold);
+          });
+        };
+        // Mostly all points and the sample are in the light, or none is.
+        if (!any_differs(work.light.back().irradiance, {})) return false;
+        LightAt own;
+        punctual_light_at(lit, kRaysOfSample, std::span(work.receivers).last(1), work.batch,
+                          {&own, 1});
+        traced += work.batch.rays.size();
+        return own.variance <= 0 &&
+               any_differs(own.irradiance, max(direct.irradiance[i] - own.irradiance, Rgb{}));
+      });
 }
 
 /// Those of `among` that are not in `known` and face a punctual light; all in the order of the map.
@@ -268,13 +319,12 @@ Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t>
   std::ranges::set_intersection(all, among, std::back_inserter(uneven));
   std::ranges::set_intersection(border_texels(in.atlas, in.map, uneven), among,
                                 std::back_inserter(borders));
-  LUXEL_TRY(const uint64_t rays, keep_uneven(in, params, kBorderPoints, direct, borders, progress));
+  LUXEL_TRY(const uint64_t rays, keep_uneven_at_borders(in, params, direct, borders, progress));
   std::ranges::merge(uneven, borders, std::back_inserter(known));
   // Flecks of sun between leaves are smaller than texels: the samples of a texel and of all its
   // neighbours can miss them. Soft light has none.
   std::vector<uint32_t> flecks = facing_punctual_lights(in, among, known);
-  LUXEL_TRY(const uint64_t of_flecks,
-            keep_uneven(in, params, kFleckPoints, direct, flecks, progress));
+  LUXEL_TRY(const uint64_t of_flecks, keep_flecked(in, params, direct, flecks, progress));
   std::ranges::merge(known, flecks, std::back_inserter(which));
   LUXEL_TRY(Supersampled out, average_texels(in, which, params, direct, progress));
   out.rays += rays + of_flecks;

@@ -205,6 +205,26 @@ TEST(Supersample, AFleckThatAllSamplesMissIsFoundFarFromAnyEdge) {
   EXPECT_EQ(holes, 2u);
 }
 
+// A sun with a disc and a lamp, with nothing in between. Looking for flecks takes 17 rays of each
+// texel, whatever the lamp takes: a ray for each point and the sample. At the border 8 points had 8
+// rays each for the disc before.
+TEST(Supersample, LookingForFlecksTakesFewRaysBesideALamp) {
+  const auto rays = [](bool with_sun) {
+    scene::Scene scene = sunlit_floor();
+    scene.lights[0].angular_radius_rad = 0.00465f;
+    if (!with_sun) scene.lights.clear();
+    scene.materials.emplace_back().emission = {9, 9, 9};
+    add_quad(scene, {-90, 40, -10}, {-50, 40, -10}, {-50, 40, 30}, {-90, 40, 30});
+    scene.meshes.back().triangle_material = {1, 1};
+    const Lit lit = light(scene, 16);
+    EXPECT_GT(lit.before.irradiance[0].x, with_sun ? 1.0f : 0.01f) << "both shine";
+    EXPECT_TRUE(lit.done.texels.empty());
+    return double(lit.done.rays);
+  };
+  constexpr double kAll = kSupersampleSide * kSupersampleSide, kBorder = 4 * (kSupersampleSide - 1);
+  EXPECT_EQ(rays(true) - rays(false), 17 * kAll + 8 * 8 * kBorder);
+}
+
 // What the estimate is for: on average over texels it is the squared error, here within a factor of
 // three, for it takes neighbouring points for the two halves of a stratum.
 TEST(Supersample, TheVarianceIsThatOfTheMean) {

@@ -38,7 +38,7 @@ inline Receiver receiver_at(const PointScene& at, const transport::SmoothPoint& 
           trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
 }
 
-/// Only to be asked whether it is enclosed: it has no seed.
+/// The sample of a texel, without a seed: enough to be asked whether it is enclosed.
 inline Receiver own_receiver(const PointScene& at, const transport::Elements& elements, size_t i) {
   return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
                      0);

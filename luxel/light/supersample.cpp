@@ -247,9 +247,8 @@ Result<uint64_t> keep_uneven_at_borders(const TexelScene& in, const SupersampleP
 }
 
 /// Keeps those of `which` in which some points are in the light of a punctual light and others are
-/// not: a ray each tells. A texel whose sample lies in a penumbra is not asked, as its neighbours
-/// tell, and one ray does not; nor one under so many lamps that some stand for others. Returns the
-/// number of rays.
+/// not: a ray each tells. In a penumbra one ray does not, and neighbours do: what differs by no
+/// more than the noise of the sample's own few rays counts for nothing. Returns the number of rays.
 Result<uint64_t> keep_flecked(const TexelScene& in, const SupersampleParams& params,
                               const DirectLight& direct, std::vector<uint32_t>& which,
                               Progress& progress) {
@@ -262,22 +261,23 @@ Result<uint64_t> keep_flecked(const TexelScene& in, const SupersampleParams& par
         atlas::spread_points(in.atlas, in.map.texels[i], cover, kFleckPoints, seed, work.spread);
         receive_at_points(place, seed, i, work);
         work.receivers.push_back(own_receiver(place, in.elements, i));
+        work.receivers.back().seed = hash64(seed, i);
         work.light.emplace_back();
         punctual_light_at(lit, 1, work.receivers, work.batch, work.light);
         traced += work.batch.rays.size();
-        const auto any_differs = [&](Rgb from, Rgb others) {
+        const auto any_differs = [&](const LightAt& from, Rgb others) {
           return std::ranges::any_of(work.light, [&](const LightAt& l) {
-            return differ({others + l.irradiance, 0}, {others + from, 0}, params.threshold);
+            return differ({others + l.irradiance, l.variance},
+                          {others + from.irradiance, from.variance}, params.threshold);
           });
         };
         // Mostly all points and the sample are in the light, or none is.
-        if (!any_differs(work.light.back().irradiance, {})) return false;
+        if (!any_differs(LightAt(work.light.back()), {})) return false;
         LightAt own;
         punctual_light_at(lit, kRaysOfSample, std::span(work.receivers).last(1), work.batch,
                           {&own, 1});
         traced += work.batch.rays.size();
-        return own.variance <= 0 &&
-               any_differs(own.irradiance, max(direct.irradiance[i] - own.irradiance, Rgb{}));
+        return any_differs(own, max(direct.irradiance[i] - own.irradiance, Rgb{}));
       });
 }
 

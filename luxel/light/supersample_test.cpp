@@ -205,6 +205,25 @@ TEST(Supersample, AFleckThatAllSamplesMissIsFoundFarFromAnyEdge) {
   EXPECT_EQ(holes, 2u);
 }
 
+// A plate of 0.8 m x 0.4 m above the same two texels takes a sixth of their light. The sun has a
+// colour, whose light no float adds up exactly.
+TEST(Supersample, AFleckOfShadowIsFoundInTheLightOfAColouredSun) {
+  scene::Scene scene = sunlit_floor();
+  scene.lights[0].intensity = {0.9f, 0.7f, 0.3f};
+  const float left = 10.6f, right = 11.4f, near = 8.05f, far = 8.45f;
+  add_quad(scene, {left, 1, near}, {right, 1, near}, {right, 1, far}, {left, 1, far});
+  const Lit lit = light(scene, 64);
+  size_t below_plate = 0;
+  for (size_t i = 0; i < lit.map.texels.size(); ++i) {
+    const atlas::Texel& texel = lit.map.texels[i];
+    const bool below = texel.y == 8 && (texel.x == 10 || texel.x == 11);
+    EXPECT_FLOAT_EQ(lit.before.irradiance[i].x, 0.9f) << "no sample lies in the shadow";
+    EXPECT_NEAR(lit.after.irradiance[i].x, below ? 0.84 * 0.9 : 0.9, below ? 0.06 : 1e-6);
+    below_plate += below;
+  }
+  EXPECT_EQ(below_plate, 2u);
+}
+
 // A sun with a disc and a lamp, with nothing in between. Looking for flecks takes 17 rays of each
 // texel, whatever the lamp takes: a ray for each point and the sample. At the border 8 points had 8
 // rays each for the disc before.

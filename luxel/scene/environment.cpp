@@ -4,38 +4,26 @@
 #include <cmath>
 
 #include "luxel/base/check.h"
-#include "luxel/base/circle.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/base/vectorize.h"
+#include "luxel/scene/both_environment.h"
 
 namespace luxel::scene {
 namespace {
-
-/// acos for the whole range: acos itself loses half of the digits near the poles.
-inline float angle_from_up(Vec3 d) { return angle_of(std::sqrt(d.x * d.x + d.z * d.z), d.y); }
-
-inline Vec2 place_of(float rotation_rad, Vec3 d) {
-  const float u = 0.5f + (angle_of(d.z, d.x) - rotation_rad) * (1 / (2 * kPi));
-  const float wrapped = u - std::floor(u);
-  return {wrapped < 1 ? wrapped : 0.0f, angle_from_up(d) * (1 / kPi)};
-}
-
-inline uint32_t pixel_at(int width, int height, Vec2 uv) {
-  const int x = std::min(int(uv.x * float(width)), width - 1);
-  const int y = std::clamp(int(uv.y * float(height)), 0, height - 1);  // NaN is anything
-  return uint32_t(y) * uint32_t(width) + uint32_t(x);
-}
 
 LUXEL_VECTOR_CLONES
 void find_pixels(int width, int height, float rotation_rad, const Vec3* direction, uint32_t* pixel,
                  size_t count) {
   for (size_t i = 0; i < count; ++i)
-    pixel[i] = pixel_at(width, height, place_of(rotation_rad, direction[i]));
+    pixel[i] = both::pixel_of_environment(width, height,
+                                          both::place_in_environment(rotation_rad, direction[i]));
 }
 
 }  // namespace
 
-Vec2 uv_of(const Environment& map, Vec3 d) { return place_of(map.rotation_rad, d); }
+Vec2 uv_of(const Environment& map, Vec3 d) {
+  return both::place_in_environment(map.rotation_rad, d);
+}
 
 Vec3 direction_of(const Environment& map, Vec2 uv) {
   const float phi = 2 * kPi * (uv.x - 0.5f) + map.rotation_rad, theta = kPi * uv.y;
@@ -44,7 +32,7 @@ Vec3 direction_of(const Environment& map, Vec2 uv) {
 }
 
 size_t pixel_towards(const Environment& map, Vec3 direction) {
-  return pixel_at(map.width, map.height, uv_of(map, direction));
+  return both::pixel_of_environment(map.width, map.height, uv_of(map, direction));
 }
 
 void pixels_towards(const Environment& map, std::span<const Vec3> directions,

@@ -8,14 +8,6 @@
 namespace luxel::device {
 namespace {
 
-constexpr size_t kTogether = 64;  // elements of a work group, as the shader has it
-
-/// Element in element_rays.glsl.
-struct DeviceElement {
-  Vec3 origin, normal, geometric_normal;
-};
-static_assert(sizeof(DeviceElement) == 36);
-
 struct HitsPush {
   trace::DeviceWorld world;
   VkDeviceAddress elements, plain, hits;
@@ -25,24 +17,6 @@ struct HitsPush {
   uint32_t unused = 0;
 };
 static_assert(sizeof(HitsPush) <= 128);
-
-Result<gpu::Buffer> buffer_of_elements(gpu::Commands& commands, const transport::Elements& elements,
-                                       float diagonal_m) {
-  std::vector<DeviceElement> out(elements.size());
-  for (size_t i = 0; i < out.size(); ++i)
-    out[i] = {trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-              elements.normal[i], elements.geometric_normal[i]};
-  return gpu::uploaded(commands, std::as_bytes(std::span(out)), "the buffer of elements");
-}
-
-/// PlainCells in element_rays.glsl.
-Result<gpu::Buffer> buffer_of_samples(gpu::Commands& commands, uint32_t samples) {
-  gather::PlainCells plain;
-  gather::sort_by_plain_cell({0, samples}, plain);
-  std::vector<uint32_t> words(plain.first_of.begin(), plain.first_of.end());
-  words.insert(words.end(), plain.sample.begin(), plain.sample.end());
-  return gpu::uploaded(commands, std::as_bytes(std::span(words)), "the buffer of samples");
-}
 
 }  // namespace
 
@@ -55,8 +29,7 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
   const gpu::Device& device = tracer.device();
   FirstHits out;
   out.element_count = n, out.params = params;
-  LUXEL_TRY(out.elements, buffer_of_elements(commands, elements, diagonal_m));
-  LUXEL_TRY(out.samples, buffer_of_samples(commands, params.samples));
+  LUXEL_TRY(out.from, element_buffers(commands, elements, diagonal_m, params.samples));
   LUXEL_TRY(out.hits,
             gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(trace::DeviceHit),
                              gpu::Access::device, "the buffer of hits"));
@@ -74,8 +47,8 @@ Result<double> trace_first_hits(const trace::DeviceRayTracer& tracer, gpu::Comma
   const gpu::Device& device = tracer.device();
   const uint64_t seed = gather::seed_of_all_rays(hits.params.seed);
   HitsPush push{.world = tracer.world(),
-                .elements = hits.elements.address,
-                .plain = hits.samples.address,
+                .elements = hits.from.elements.address,
+                .plain = hits.from.samples.address,
                 .hits = hits.hits.address,
                 .seed_low = uint32_t(seed),
                 .seed_high = uint32_t(seed >> 32),

@@ -1,9 +1,8 @@
 // Gather's rays on a graphics device: made there, traced there, and what they meet kept there.
 #pragma once
 
-#include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/solve/device/element_buffers.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
-#include "luxel/transport/elements.h"
 
 namespace luxel::device {
 
@@ -16,8 +15,8 @@ struct FirstHitsParams {
 struct FirstHits {
   size_t element_count = 0;
   FirstHitsParams params;
-  gpu::Buffer elements, samples;  ///< Element and PlainCells of shaders/element_rays.glsl
-  gpu::Buffer hits;               ///< trace::DeviceHit, at index_of(); filled by trace_first_hits()
+  ElementBuffers from;
+  gpu::Buffer hits;  ///< trace::DeviceHit, at index_of(); filled by trace_first_hits()
   gpu::Pipeline pipeline;
   gpu::PieceSize piece{64};  ///< of groups: each has the rays of 64 elements in one cell
 

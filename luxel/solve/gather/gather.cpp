@@ -10,6 +10,7 @@
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/partial_light.h"
+#include "luxel/solve/gather/rays/ray_device.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
 #include "luxel/solve/gather/reuse/earlier.h"
 #include "luxel/solve/gather/steps.h"
@@ -136,6 +137,7 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
                                       in.observer.on_bounce, progress));
   out.hit_bytes_in_file = light.hits.bytes_in_file();
   light.hits.rounds.clear();
+  if (light.hits.device) std::exchange(light.hits.device, nullptr)->forget();
   LUXEL_TRY_STATUS(judge(in, light, progress));
   drop_light(light.hits);
   show(in.observer, light, true);
@@ -184,6 +186,7 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
   if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
+  if (stores.device) LUXEL_TRY_STATUS(stores.device->accepts(trace_scene(scene, &sides)));
   // 1. Light straight from the lights, with shadow rays.
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));
   // 2. The rays that every element gets, and what they hit.

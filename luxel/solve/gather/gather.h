@@ -19,6 +19,7 @@
 namespace luxel::gather {
 
 struct Earlier;
+class RayDevice;
 
 /// What a largest error is said of.
 enum class ErrorMeasure : uint8_t {
@@ -54,6 +55,9 @@ struct GatherStores {
   std::filesystem::path scratch_folder = ".";  ///< where those files are
   PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
   PartStore* keep = nullptr;   ///< where rays are kept for later bakes of the scene; null: nowhere
+  /// Traces and keeps the first round of rays; null: the processor. Not with keep, earlier or light
+  /// that is told apart.
+  RayDevice* device = nullptr;
   Earlier* earlier = nullptr;  ///< is used up; its rounds come first; null: nothing is known
 };
 
@@ -125,7 +129,7 @@ inline constexpr uint64_t kEnclosedBytesPerElement = bytes_per_entry(&Gather::en
 inline constexpr uint64_t kTargetBytesPerElement = bytes_per_entry(&Gather::samples);
 
 /// Direct light, rays, bounces: the chain of docs/method/gather.md. `layers` tells light apart;
-/// null: it does not. Errors: cancelled, disk full.
+/// null: it does not. Errors: cancelled, disk full; with stores.device those of RayDevice.
 Result<Gather> gather(const light::TexelScene& in, const light::LightLayers* layers,
                       const GatherParams& params, const GatherStores& stores,
                       const GatherObserver& observer, Progress& progress);

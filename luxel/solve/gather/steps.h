@@ -68,7 +68,7 @@ RayCosts costs_of(const Request& in, const Progressive& light);
 /// Direct light, from scratch or from an earlier bake. Errors: cancelled.
 Status begin_direct(const Request& in, Progressive& light, Progress& progress);
 /// Rays of each element up to so many as `target` says. `watch`: null: nobody. Errors: cancelled,
-/// disk full.
+/// disk full; those of stores.device.
 Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
                    Progress& progress, const TileWatch* watch = nullptr);
 /// All bounces of the light of those rays. Errors: cancelled, the file of hits cannot be read.

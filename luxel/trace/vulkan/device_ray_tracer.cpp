@@ -134,26 +134,19 @@ Status DeviceRayTracer::make_room(size_t count) {
   return {};
 }
 
-namespace {
-
-/// A device's hit as those of RayTracer: what has two sides is met on the side that the ray comes
-/// from.
-Hit hit_of(const scene::Scene& scene, std::span<const uint32_t> first_triangle,
-           const DeviceHit& met) {
+Hit DeviceRayTracer::hit_of(const DeviceHit& met) const {
   if (met.number == DeviceHit::kNoTriangle) return {};
-  const auto drawn = scene::drawn_triangle(first_triangle, met.number & ~DeviceHit::kBackFace);
+  const auto drawn = scene::drawn_triangle(first_triangle_, met.number & ~DeviceHit::kBackFace);
   Hit out{met.t,
           drawn.instance,
           drawn.triangle,
           {met.u, met.v},
           (met.number & DeviceHit::kBackFace) != 0};
   if (!out.back_face) return out;
-  if (const auto other = scene::other_side_of(scene, out.point()))
+  if (const auto other = scene::other_side_of(*scene_, out.point()))
     out.triangle = other->triangle, out.at = other->at, out.back_face = false;
   return out;
 }
-
-}  // namespace
 
 Status DeviceRayTracer::trace_parts(const gpu::Pipeline& pipeline, size_t bytes_per_answer,
                                     std::span<const Ray> rays, const AtPart& at_part) {
@@ -175,8 +168,7 @@ Status DeviceRayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> h
   return trace_parts(closest_, sizeof(DeviceHit), rays, [&](size_t first, size_t count) {
     const auto* met = reinterpret_cast<const DeviceHit*>(answered_.mapped);
     parallel_for(count, 4096, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        hits[first + i] = hit_of(*scene_, first_triangle_, met[i]);
+      for (size_t i = begin; i < end; ++i) hits[first + i] = hit_of(met[i]);
     });
   });
 }

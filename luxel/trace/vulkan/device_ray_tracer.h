@@ -67,6 +67,10 @@ class DeviceRayTracer {
   /// Errors: the device is lost.
   Result<double> closest_hits(DeviceRays& rays);
 
+  /// A device's hit as those of RayTracer: what has two sides is met on the side that the ray comes
+  /// from.
+  Hit hit_of(const DeviceHit& met) const;
+
   /// For shaders that trace rays themselves: they include shaders/binary.glsl or shaders/wide.glsl,
   /// as kind() is, and get lets_light_through() as their constant 0.
   DeviceWorld world() const;

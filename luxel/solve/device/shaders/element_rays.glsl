@@ -46,3 +46,14 @@ uint plain_cell(uint cell, uint plain_x, uint plain_y) {
   x = plain_x >> 3 * x & 7, y = plain_y >> 3 * y & 7;
   return (x & 1) | (x & 2) << 1 | (x & 4) << 2 | ((y & 1) | (y & 2) << 1 | (y & 4) << 2) << 1;
 }
+
+// Where the rays of a cell begin among an element's: so many lie in the cells before it.
+uint first_place(PlainCells plain, uint cell, uint samples, uint plain_x, uint plain_y) {
+  if (samples % kCells == 0) return samples / kCells * cell;
+  uint place = 0;
+  for (uint c = 0; c < cell; ++c) {
+    uint p = plain_cell(c, plain_x, plain_y);
+    place += plain.first_of[p + 1] - plain.first_of[p];
+  }
+  return place;
+}

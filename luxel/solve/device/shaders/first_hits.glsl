@@ -25,15 +25,7 @@ void main() {
   Element e = elements.at[i];
   uvec2 own_seed = hash64(seed, uvec2(i, 0));
   uint plain_x = plain_eighths(own_seed.x), plain_y = plain_eighths(own_seed.y);
-  // Rays of the cells before: all have the same number, if it divides them.
-  uint place = samples / kCells * cell;
-  if (samples % kCells != 0) {
-    place = 0;
-    for (uint c = 0; c < cell; ++c) {
-      uint p = plain_cell(c, plain_x, plain_y);
-      place += plain.first_of[p + 1] - plain.first_of[p];
-    }
-  }
+  uint place = first_place(plain, cell, samples, plain_x, plain_y);
   uint p = plain_cell(cell, plain_x, plain_y);
   for (uint k = plain.first_of[p]; k < plain.first_of[p + 1]; ++k, ++place) {
     Ray ray = Ray(e.origin, ray_direction(e, plain.sample_of[k], own_seed), 0, uintBitsToFloat(0x7f800000u));

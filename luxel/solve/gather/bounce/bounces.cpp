@@ -205,7 +205,10 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     if (!change) return tl::unexpected(change.error());
   }
   if (params.bounces >= 0) return std::move(bouncing.out);
-  const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
+  // A device has no sparse sweeps: those over all of its rays take about as long as the map needs
+  // to get there. Rays that the processor has added are all swept, too.
+  const bool may_be_sparse = !hits.samples.empty() && !hits.device;
+  const size_t fewest = may_be_sparse ? *std::ranges::min_element(hits.samples) : 0;
   const size_t sparse = sparsest_stride(fewest);
   if (guessed && sparse > 1) {
     LUXEL_TRY_STATUS(bouncing.settle_guess(sparse, params));

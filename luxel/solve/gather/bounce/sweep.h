@@ -38,7 +38,8 @@ struct Sweep {
   std::vector<double> change2{};
 };
 
-/// Errors: the file of hits cannot be read, cancelled.
+/// Hits on a device are swept there, with stride 1 alone. Errors: the file of hits cannot be read,
+/// the device is lost, cancelled.
 Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress);
 
 }  // namespace luxel::gather

@@ -12,9 +12,13 @@
 
 namespace luxel::gather {
 
+class RayDevice;
+
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.
 struct TracedHits {
   std::vector<HitStore> rounds;
+  /// Where the hits of the first round are, whose store is empty; null: in that.
+  RayDevice* device = nullptr;
   std::vector<uint16_t> samples;    ///< per element, of all rounds that count
   std::vector<uint8_t> last_round;  ///< per element, that which added to it last
   /// Per element, the first round that counts: 0, or that in which its rays began anew; and the

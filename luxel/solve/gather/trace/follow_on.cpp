@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "luxel/base/random.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 namespace {
@@ -99,7 +100,7 @@ void add_element(const RayScene& in, ElementEnds ends, std::span<const FollowedP
     if (was && !stays) note_change(in, path.brought, path.hit, -1, element, out);
     if (now[k] != RayEnd::followed) continue;
     if (!stays) {
-      path.brought = {};  // unless it was dropped: see Round::drop_enclosed_paths()
+      path.brought = {};  // unless it was dropped: drop_enclosed_paths()
       if (!traced.empty() && traced.front().element == element && traced.front().ray == k)
         path = traced.front(), traced = traced.subspan(1);
       if (path.brought.way().is_plain) near_m = std::max(near_m, path.first_m);
@@ -127,6 +128,15 @@ HitTile joined(const HitTile& a, const HitTile& b) {
 }
 
 }  // namespace
+
+void drop_enclosed_paths(const RayScene& in, const transport::Elements& elements, size_t element,
+                         const TracedHits& hits, NearBuffers& near) {
+  if (near.paths.empty() || near.paths.back().element != element) return;
+  if (transport::is_enclosed(in.scene, in.near->tracer, elements, element,
+                             back_faces(hits, element), in.near->diagonal_m))
+    std::erase_if(near.paths,
+                  [element](const NearPath& p) { return p.element == element && p.hit.back_face; });
+}
 
 uint64_t follow_paths(const RayScene& in, RayBuffers& buffers, TracedHits& out) {
   if (buffers.near.paths.empty()) return 0;

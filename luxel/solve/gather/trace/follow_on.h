@@ -12,6 +12,12 @@ namespace luxel::gather {
 /// Paths that are followed at a time: enough to fill packets, few enough to stay in a core's cache.
 inline constexpr size_t kPathsAtATime = 1024;
 
+/// Takes back those paths of an element, the last that has some, that began on backs, if it lies
+/// inside a solid: there it is dark, and paths along its walls, which are long, would bring
+/// nothing. `hits` has counted what all its rays have met.
+void drop_enclosed_paths(const RayScene& in, const transport::Elements& elements, size_t element,
+                         const TracedHits& hits, NearBuffers& near);
+
 /// Follows buffers.near.paths on and adds where they end to buffers.followed. Returns the number of
 /// rays.
 uint64_t follow_paths(const RayScene& in, RayBuffers& buffers, TracedHits& out);

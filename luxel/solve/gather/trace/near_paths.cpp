@@ -72,14 +72,17 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
   return width;
 }
 
+float near_m(const NearScene& in, const trace::Hit& hit) {
+  return kNearTexels * in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)];
+}
+
 MapAnswers map_answers(const NearScene& in, const trace::Hit& hit) {
   const scene::Material& material = scene::material_at(in.scene, hit.point());
   // What scatters light through shines by the light behind it, which the map knows.
   if (material.diffuse_transmission > 0) return MapAnswers::yes;
   if (hit.back_face)
     return scene::reflects_from_behind(material) ? MapAnswers::no : MapAnswers::yes;
-  const float width_m = in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)];
-  if (hit.t < kNearTexels * width_m) return MapAnswers::no;
+  if (hit.t < near_m(in, hit)) return MapAnswers::no;
   return in.sides ? MapAnswers::where_own : MapAnswers::yes;
 }
 

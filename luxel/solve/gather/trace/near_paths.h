@@ -83,6 +83,8 @@ uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers);
 /// something there.
 enum class MapAnswers : uint8_t { yes, no, where_own };
 MapAnswers map_answers(const NearScene& in, const trace::Hit& hit);
+/// How far a ray that meets a front must go for the map to have an answer [m].
+float near_m(const NearScene& in, const trace::Hit& hit);
 /// Whether the map has no answer for the place that a path has met, and light comes along the path.
 bool goes_on(const NearScene& in, const NearPath& path);
 

@@ -74,11 +74,6 @@ void add_escaped(const RayScene& in, const EscapedLight& light, size_t element, 
   add_sky(in.layers, light.sum, element, out);
 }
 
-bool shows_light(const RayScene& in, const trace::Hit& hit) {
-  return hit.found() &&
-         (!hit.back_face || scene::reflects_from_behind(scene::material_at(in.scene, hit.point())));
-}
-
 /// Whether the map is not asked about what a ray has met: its path goes on from there.
 bool passes_map_by(const RayScene& in, const trace::Hit& hit) {
   return in.near != nullptr && map_answers(*in.near, hit) == MapAnswers::no;
@@ -184,6 +179,11 @@ void take_traced(const RayBuffers& buffers, size_t k, RayEnd end, const RaysOf& 
 }
 
 }  // namespace
+
+bool shows_light(const RayScene& in, const trace::Hit& hit) {
+  return hit.found() &&
+         (!hit.back_face || scene::reflects_from_behind(scene::material_at(in.scene, hit.point())));
+}
 
 void add_sky(const light::LightLayers* layers, Rgb l, size_t element, TracedHits& out) {
   if (layers && layers->of_surroundings)

@@ -68,6 +68,9 @@ struct RayBuffers : RetraceBuffers {
   PlacesMet places;
 };
 
+/// Whether what a ray has met sends light towards it.
+bool shows_light(const RayScene& in, const trace::Hit& hit);
+
 /// Where light at a point of the scene is read from the map, on its own side of every wall.
 StoredHit store(const RayScene& in, const scene::SurfacePoint& p, StoredHit::Ray ray,
                 transport::MayBeInside inside = transport::MayBeInside::no);

@@ -15,8 +15,8 @@
 #include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/follow_on.h"
 #include "luxel/solve/gather/trace/kept_hits.h"
+#include "luxel/solve/gather/trace/scene_of_rays.h"
 #include "luxel/solve/gather/trace/sort_rays.h"
-#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 
@@ -73,8 +73,6 @@ struct Round {
   /// nothing.
   void trace_element(size_t i, const EarlierElement* before, RayBuffers& buffers, TracedHits& out,
                      TracedTile& tile) const;
-  /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
-  void drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits& hits) const;
 };
 
 void Round::fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBatch& batch) const {
@@ -86,13 +84,6 @@ void Round::fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBat
                      batch);
   }
   fill_rays(from, n, flat, seed_of_rays(seed, i), samples, batch);
-}
-
-void Round::drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits& hits) const {
-  std::vector<NearPath>& paths = buffers.near.paths;
-  if (paths.empty() || paths.back().element != i) return;
-  if (transport::is_enclosed(ray_scene.scene, tracer, elements, i, back_faces(hits, i), diagonal_m))
-    std::erase_if(paths, [i](const NearPath& p) { return p.element == i && p.hit.back_face; });
 }
 
 /// Traces all rays of the batch.
@@ -127,7 +118,7 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayBuffers& bu
     sort_rays(ray_scene, buffers, i, samples, out, tile.rays_met);
   }
   if (!is_guided(out, i)) out.counted[i] = out.samples[i];
-  drop_enclosed_paths(i, buffers, out);
+  drop_enclosed_paths(ray_scene, elements, i, out, buffers.near);
   tile.kept += before ? samples.count() - traced : 0;
   tile.rays += traced;
 }
@@ -306,27 +297,16 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
             HitStore::create(elements.size(), kTileElements, most_added(target, hits),
                              params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
                              params.scratch_folder));
-  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
-  std::optional<NearScene> near;
-  std::vector<float> widths;
-  if (params.follows_near) {
-    widths = texel_widths_m(in.scene, in.atlas);
-    near.emplace(NearScene{in.scene, in.atlas, in.lights, in.tracer, widths, diagonal_m,
-                           params.followed_layers ? params.followed_layers : params.layers,
-                           in.sides});
-  }
-  const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
-  if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
-  const RayScene ray_scene{in.scene,      in.atlas, in.lights.around, near ? &*near : nullptr,
-                           params.layers, sent,     params.seed,      in.sides};
+  const SceneOfRays scene(in, params);
+  if (scene.rays().sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
   std::vector<uint64_t> doubtful;
   if (in.sides && params.earlier && !params.earlier->boxes.empty())
     doubtful = transport::lookups_near(*in.sides, params.earlier->boxes);
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
-  LUXEL_TRY_STATUS(trace_tiles({ray_scene, elements, in.tracer, target, params.seed, diagonal_m,
-                                number, params.earlier, params.watch, doubtful},
+  LUXEL_TRY_STATUS(trace_tiles({scene.rays(), elements, in.tracer, target, params.seed,
+                                scene.diagonal_m(), number, params.earlier, params.watch, doubtful},
                                kept, params.keep, hits, store, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);

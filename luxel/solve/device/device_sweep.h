@@ -1,0 +1,23 @@
+// A sweep of gather on a graphics device: what each element's rays bring from the map.
+#pragma once
+
+#include "luxel/solve/device/landed_rays.h"
+#include "luxel/solve/gather/bounce/radiosity_map.h"
+
+namespace luxel::device {
+
+/// gather::Gathered of an element, as devices leave it.
+struct DeviceGathered {
+  Rgb sum{};
+  float sum_luminance2 = 0;
+  float first_less_second = 0;
+};
+static_assert(sizeof(DeviceGathered) == 20);
+
+/// What the elements gather from the map, the same as gather::gather_round() adds up but for the
+/// order: `out` has one value per element. Returns the seconds until the device was done. Errors:
+/// no memory, the device is lost.
+Result<double> sweep(gpu::Commands& commands, LandedRays& rays, const gather::RadiosityMap& map,
+                     std::span<DeviceGathered> out);
+
+}  // namespace luxel::device

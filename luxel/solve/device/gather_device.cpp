@@ -1,0 +1,67 @@
+#include "luxel/solve/device/gather_device.h"
+
+#include <optional>
+
+#include "luxel/base/check.h"
+#include "luxel/solve/device/device_sweep.h"
+#include "luxel/solve/device/landed_rays.h"
+#include "luxel/solve/gather/bounce/sweep.h"
+
+namespace luxel::device {
+namespace {
+
+class GatherDevice final : public gather::RayDevice {
+ public:
+  explicit GatherDevice(const gpu::Device& device) : device_(&device) {}
+
+  Status accepts(const gather::TraceScene& in) const override {
+    if (in.tracer.has_tints())
+      return fail(ErrorCode::unsupported,
+                  "rays on the device know no coloured glass, which the scene has: bake it on the "
+                  "processor");
+    return {};
+  }
+
+  Status trace(const gather::TraceScene& in, int samples, const gather::TraceParams& params,
+               gather::TracedHits& hits, Progress& progress) override {
+    forget();
+    LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device_));
+    commands_.emplace(std::move(commands));
+    LUXEL_TRY(const trace::DeviceRayTracer tracer,
+              trace::DeviceRayTracer::build(*device_, in.scene));
+    LandedSeconds seconds;
+    LUXEL_TRY(LandedRays rays, land_rays({tracer, *commands_, in}, {.samples = samples}, params,
+                                         hits, seconds, progress));
+    rays_.emplace(std::move(rays));
+    gathered_.resize(in.elements.size());
+    return {};
+  }
+
+  Status sweep(const gather::RadiosityMap& map, std::span<gather::Gathered> out) override {
+    LUXEL_CHECK(rays_ && out.size() == gathered_.size());
+    LUXEL_TRY([[maybe_unused]] const double seconds,
+              device::sweep(*commands_, *rays_, map, gathered_));
+    for (size_t i = 0; i < out.size(); ++i) {
+      const DeviceGathered& g = gathered_[i];
+      out[i].sum = gather::Float4{g.sum.x, g.sum.y, g.sum.z, 0};
+      out[i].sum_luminance2 = g.sum_luminance2, out[i].first_less_second = g.first_less_second;
+    }
+    return {};
+  }
+
+  void forget() override { rays_.reset(), gathered_.clear(); }
+
+ private:
+  const gpu::Device* device_;
+  std::optional<gpu::Commands> commands_;
+  std::optional<LandedRays> rays_;  ///< of the last trace(); goes before commands_
+  std::vector<DeviceGathered> gathered_;
+};
+
+}  // namespace
+
+std::unique_ptr<gather::RayDevice> gather_device(const gpu::Device& device) {
+  return std::make_unique<GatherDevice>(device);
+}
+
+}  // namespace luxel::device

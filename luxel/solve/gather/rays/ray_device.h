@@ -1,0 +1,42 @@
+// What a graphics device does of gather; luxel/solve/device/ has one. Gather itself knows no
+// graphics.
+#pragma once
+
+#include <span>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+
+namespace luxel::gather {
+
+struct Gathered;
+struct RadiosityMap;
+struct TraceParams;
+struct TracedHits;
+struct TraceScene;
+
+/// Traces the first round of rays and keeps where they land. One solution at a time uses it. It
+/// keeps no parts, and shows nobody how the round grows.
+class RayDevice {
+ public:
+  virtual ~RayDevice() = default;
+
+  /// Whether the device can trace the scene; else a sentence (ErrorCode::unsupported).
+  virtual Status accepts(const TraceScene& in) const = 0;
+
+  /// trace_hits(), but that the hits stay on the device until forget(), and sweep() has what they
+  /// bring. A scene that it accepts, some elements; 1 to 65535 samples; `hits` as no_hits() gives
+  /// them. In params neither parts, keep, earlier nor layers. Errors: ErrorCode::unsupported for
+  /// too many rays, cancelled, no memory, the device is lost.
+  virtual Status trace(const TraceScene& in, int samples, const TraceParams& params,
+                       TracedHits& hits, Progress& progress) = 0;
+
+  /// What each element's rays of trace() bring from the map; their halves are those of all of them.
+  /// Errors: no memory, the device is lost.
+  virtual Status sweep(const RadiosityMap& map, std::span<Gathered> out) = 0;
+
+  /// Gives the memory of trace() back.
+  virtual void forget() = 0;
+};
+
+}  // namespace luxel::gather

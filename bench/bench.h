@@ -41,6 +41,8 @@ using BenchFunction = Result<Table> (*)(const std::filesystem::path& shared, int
 Result<Table> measure_rays(const std::filesystem::path& shared, int threads);
 /// Rays per second of a graphics device against those of the processor.
 Result<Table> measure_gpu(const std::filesystem::path& shared, int threads);
+/// Gather's first round and its sweeps on a graphics device against those of the processor.
+Result<Table> measure_gpu_gather(const std::filesystem::path& shared, int threads);
 /// Those of rays that texels share the directions of, against gather's own: an experiment.
 Result<Table> measure_bundles(const std::filesystem::path& shared, int threads);
 /// The Cornell box of [Moreno05, table 5.1] at four resolutions.
@@ -104,6 +106,7 @@ inline constexpr std::array kBenches{Bench{"rays", measure_rays},
                                      Bench{"quality", measure_quality},
                                      Bench{"rms", measure_rms, measure_rms_in},
                                      Bench{"bundles", measure_bundles},
-                                     Bench{"gpu", measure_gpu}};
+                                     Bench{"gpu", measure_gpu},
+                                     Bench{"gpu-gather", measure_gpu_gather}};
 
 }  // namespace luxel::bench

@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kPaths = 16384;
 constexpr double kGoal = 0.01;
+/// Twice the samples that leave more than this part of an error lessen its noise no longer.
+constexpr double kNoLonger = 0.95;
 constexpr std::array kJudgedScenes{"cornell_box/cornell_box.glb",
                                    "living_room/living_room_lit_uv1.glb",
                                    "tile_game_room/tile_game_room_lit_uv1.glb"};
@@ -100,6 +102,15 @@ Status compare_adaptive(const std::filesystem::path& scene, Table& table) {
       LUXEL_TRY(const TimedBake uniform, timed(settings));
       const double error = double(uniform.bake.light.error_p95);
       const double rays = double(uniform.bake.light.rays);
+      if (error > goal && error > kNoLonger * error_before && rays_before > 0) {
+        table.notes.push_back(
+            fmt::format("{} to {:.1f} % (reached: {:.1f} %): {:.1f} Mrays in {:.1f} s; uniform "
+                        "sampling stays at "
+                        "{:.1f} %, which are of texels, not of noise.",
+                        scene.stem().string(), 100 * asked, 100 * goal,
+                        double(adaptive.bake.light.rays) * 1e-6, adaptive.seconds, 100 * error));
+        break;
+      }
       if (error > goal) {
         rays_before = rays, error_before = error;
         continue;

@@ -99,13 +99,14 @@ struct Measured {
 void add_row(const std::string& scene, const Measured& m, Table& table) {
   const double rays = double(m.elements) * m.samples;
   const Differences d = differences(m.device.light, m.processor.light);
-  table.rows.push_back(
-      {scene, std::to_string(m.elements), fmt::format("{:.1f}", rays * 1e-6),
-       fmt::format("{:.2f}", m.rays_s), fmt::format("{:.1f}", m.processor.seconds * 1e3),
-       fmt::format("{:.1f}", m.landed.device * 1e3),
-       fmt::format("{:.1f}", 100 * double(m.left_open) / rays),
-       fmt::format("{:.2f}", m.landed.processor), fmt::format("{:.2f}", m.device.seconds * 1e3),
-       fmt::format("{:.4f}", 100 * d.rms), fmt::format("{:.5f}", 100 * d.bias)});
+  table.rows.push_back({scene, std::to_string(m.elements), fmt::format("{:.1f}", rays * 1e-6),
+                        fmt::format("{:.2f}", m.rays_s),
+                        fmt::format("{:.1f}", m.processor.seconds * 1e3),
+                        fmt::format("{:.1f}", m.landed.device * 1e3),
+                        fmt::format("{:.1f}", 100 * double(m.left_open) / rays),
+                        fmt::format("{:.2f}", m.landed.processor), fmt::format("{:.2f}", m.round_s),
+                        fmt::format("{:.2f}", m.device.seconds * 1e3),
+                        fmt::format("{:.4f}", 100 * d.rms), fmt::format("{:.5f}", 100 * d.bias)});
   table.json.push_back({{"scene", scene},
                         {"elements", m.elements},
                         {"rays", rays},

@@ -92,16 +92,17 @@ TEST_F(LxrMakerTest, HasTheLampsAsTheyAreEdited) {
 TEST_F(LxrMakerTest, StopsSoonAndLeavesNothing) {
   to_make_.read = *read_scene(scene::cornell_box(), pipeline::BakeSettings{});
   to_make_.now = unedited(to_make_.read->scene);
-  // On two idle cores it would take longer than all of this file's tests may.
+  // 268 million rays: minutes of a processor.
   to_make_.settings.matrix.patches.count = 16384;
   to_make_.settings.matrix.factors.rays_per_patch = 16384;
   for (const int milliseconds : {0, 20, 300}) {
     auto maker = LxrMaker::begin(to_make_);
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    // Seconds of processors: the thread stands back behind all others of the machine.
+    // Seconds of processors: the thread stands back behind all others of the machine. The bound is
+    // what no slow machine comes near, and the work that is not stopped exceeds.
     const std::clock_t start = std::clock();
     maker.reset();
-    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 3);
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 60);
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path)) << milliseconds;
   }
 }

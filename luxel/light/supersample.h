@@ -33,13 +33,6 @@ struct DirectLevels {
 inline constexpr uint64_t kLevelBytesPerElement =
     bytes_per_entry(&DirectLevels::level, &DirectLevels::averaged);
 
-/// Texels whose direct light differs from that of one of their eight neighbours in the same chart
-/// by more than `threshold` of the brighter one, in any channel, and by more than three standard
-/// deviations of their noise; in the order of the map. A straight edge of a shadow that crosses a
-/// texel separates its centre from that of such a neighbour, where there is one.
-std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                                    const DirectLight& direct, float threshold);
-
 /// The points of texels at which light is averaged, without those inside of solids and those beyond
 /// walls that stand on the texel (luxel/transport/own_side.h). A texel whose
 /// own sample lies inside a solid has that alone: it is hidden, and refilled from its neighbours.

@@ -43,12 +43,13 @@ struct TurnedBox {
   Vec3 half_m;                 ///< along each axis
 };
 
-/// What the tracer may expect of 16 rays that follow each other in a batch.
+/// What the tracer may expect of 8 or 16 rays that follow each other in a batch: as many as the
+/// processor's vectors have numbers.
 enum class Packets : uint8_t {
   any,
-  /// From one place, in order of direction. In scenes of few triangles they are traced like
-  /// bundles, 1.4 to 2.5 times as fast (`luxel bench bundles`). Where surfaces coincide, which of
-  /// them a ray meets may then depend on the rest of its packet.
+  /// All from one place over a hemisphere, in order of direction. In scenes of few triangles many
+  /// of them are traced like bundles, up to 2.5 times as fast (`luxel bench bundles`). Where
+  /// surfaces coincide, which of them a ray meets may then depend on the rest of its packet.
   alike,
   bundles  ///< near to each other all the way, like neighbouring pixels: twice as fast
 };

@@ -32,7 +32,7 @@ install(FILES ${draco_archive} DESTINATION ${luxel_archives})
 # One by one, because install(DIRECTORY) would leave folders without headers, too. Without those of rooms
 # that are not installed: the devices', the window's and the tests'.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/luxel/*.h)
-list(FILTER headers EXCLUDE REGEX "(^luxel/(validate|gpu|view|trace/vulkan|solve/device)/|/test_|_test[_.]|/node_modules/)")
+list(FILTER headers EXCLUDE REGEX "(^luxel/(validate|gpu|view|trace/embree|trace/vulkan|solve/device)/|/test_|_test[_.]|/node_modules/)")
 foreach(header ${headers})
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "luxel/gpu/commands.h"
+#include "luxel/gpu/pipeline.h"
 
 namespace luxel::gpu {
 
@@ -21,5 +22,19 @@ using RecordPiece = std::function<void(VkCommandBuffer, size_t first, size_t cou
 /// What reads the results needs a full_barrier() first. Errors: the device is lost.
 Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, PieceSize& size,
                              const RecordPiece& record);
+
+/// run_in_pieces() for `count` work groups of a compute pipeline: each piece is told its first one
+/// by Push::first_group.
+template <class Push>
+Result<double> run_groups(Commands& commands, const Pipeline& pipeline, Push push, size_t count,
+                          PieceSize& size) {
+  const Device& device = commands.device();
+  return run_in_pieces(commands, count, device.limits.maxComputeWorkGroupCount[0], size,
+                       [&](VkCommandBuffer c, size_t first, size_t groups) {
+                         push.first_group = uint32_t(first);
+                         bind(device, c, pipeline, push);
+                         device.vk.vkCmdDispatch(c, uint32_t(groups), 1, 1);
+                       });
+}
 
 }  // namespace luxel::gpu

@@ -41,29 +41,22 @@ Status make_room(const gpu::Device& device, const gather::RadiosityMap& map, Lan
 Result<double> sweep(gpu::Commands& commands, LandedRays& rays, const gather::RadiosityMap& map,
                      std::span<DeviceGathered> out) {
   LUXEL_CHECK(out.size() == rays.element_count);
-  const gpu::Device& device = commands.device();
-  LUXEL_TRY_STATUS(make_room(device, map, rays));
+  LUXEL_TRY_STATUS(make_room(commands.device(), map, rays));
   std::memcpy(rays.map_sent.mapped, map.texels.data(), rays.map_sent.size);
   LUXEL_TRY_STATUS(gpu::copy_bytes(commands, rays.map_sent, rays.map, rays.map.size));
   double seconds = 0;
   for (const LandedChunk& chunk : rays.chunks) {
-    SweepPush push{.map = rays.map.address,
-                   .hits = chunk.hits.address,
-                   .more = rays.more.address,
-                   .ends = rays.ends.address,
-                   .gathered = rays.gathered.address,
-                   .element_count = uint32_t(rays.element_count),
-                   .samples = rays.samples,
-                   .map_stride = map.stride,
-                   .first_tile = uint32_t(chunk.first_tile)};
-    LUXEL_TRY(
-        const double took,
-        gpu::run_in_pieces(commands, chunk.tile_count, device.limits.maxComputeWorkGroupCount[0],
-                           rays.sweep_piece, [&](VkCommandBuffer c, size_t first, size_t count) {
-                             push.first_group = uint32_t(first);
-                             gpu::bind(device, c, rays.sweep, push);
-                             device.vk.vkCmdDispatch(c, uint32_t(count), 1, 1);
-                           }));
+    const SweepPush push{.map = rays.map.address,
+                         .hits = chunk.hits.address,
+                         .more = rays.more.address,
+                         .ends = rays.ends.address,
+                         .gathered = rays.gathered.address,
+                         .element_count = uint32_t(rays.element_count),
+                         .samples = rays.samples,
+                         .map_stride = map.stride,
+                         .first_tile = uint32_t(chunk.first_tile)};
+    LUXEL_TRY(const double took,
+              gpu::run_groups(commands, rays.sweep, push, chunk.tile_count, rays.sweep_piece));
     seconds += took;
   }
   LUXEL_TRY_STATUS(gpu::copy_bytes(commands, rays.gathered, rays.to_host, rays.gathered.size));

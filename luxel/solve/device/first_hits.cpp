@@ -44,24 +44,17 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
 
 Result<double> trace_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
                                 FirstHits& hits) {
-  const gpu::Device& device = tracer.device();
   const uint64_t seed = gather::seed_of_all_rays(hits.params.seed);
-  HitsPush push{.world = tracer.world(),
-                .elements = hits.from.elements.address,
-                .plain = hits.from.samples.address,
-                .hits = hits.hits.address,
-                .seed_low = uint32_t(seed),
-                .seed_high = uint32_t(seed >> 32),
-                .element_count = uint32_t(hits.element_count),
-                .samples = hits.params.samples};
+  const HitsPush push{.world = tracer.world(),
+                      .elements = hits.from.elements.address,
+                      .plain = hits.from.samples.address,
+                      .hits = hits.hits.address,
+                      .seed_low = uint32_t(seed),
+                      .seed_high = uint32_t(seed >> 32),
+                      .element_count = uint32_t(hits.element_count),
+                      .samples = hits.params.samples};
   const size_t tiles = (hits.element_count + kTogether - 1) / kTogether;
-  return gpu::run_in_pieces(commands, tiles * gather::kCells,
-                            device.limits.maxComputeWorkGroupCount[0], hits.piece,
-                            [&](VkCommandBuffer c, size_t first, size_t count) {
-                              push.first_group = uint32_t(first);
-                              gpu::bind(device, c, hits.pipeline, push);
-                              device.vk.vkCmdDispatch(c, uint32_t(count), 1, 1);
-                            });
+  return gpu::run_groups(commands, hits.pipeline, push, tiles * gather::kCells, hits.piece);
 }
 
 }  // namespace luxel::device

@@ -37,7 +37,7 @@ struct LandedRays {
 
 struct LandParams {
   int samples = 64;  ///< per element
-  /// Hits of so many rays lie in one buffer: 256 MB.
+  /// Hits of so many rays lie in one buffer, 256 MB, or those of gather::kTileElements elements.
   uint64_t rays_of_chunk = uint64_t(1) << 25;
   /// Room for open rays at first: one of so many of a chunk's. Where more are left open, as in a
   /// city whose every wall is thin, it runs again.
@@ -59,8 +59,9 @@ struct DeviceScene {
 
 /// The samples of all elements, as gather::trace_hits() traces them: the same rays up to rounding,
 /// and what they meet by the same rules. `hits` gets what that counts and the light that rays bring
-/// without the map; its rounds stay empty. Some elements. In params neither parts, keep, earlier
-/// nor layers; scenes without tints. Errors: 2^31 rays or more that the processor must end
+/// without the map; its rounds stay empty. The processor ends the rays of one buffer before the
+/// device begins the next one. Some elements. In params neither parts, keep, earlier nor layers;
+/// scenes without tints. Errors: 2^31 rays or more that the processor must end
 /// (ErrorCode::unsupported), cancelled, no memory, the device is lost.
 Result<LandedRays> land_rays(const DeviceScene& scene, const LandParams& land,
                              const gather::TraceParams& params, gather::TracedHits& hits,

@@ -9,6 +9,7 @@ struct Element {
   vec3 origin;  // off the surface
   vec3 normal, geometric_normal;
 };
+layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
 
 // Samples by the cell in which they lie before they are scrambled.
 layout(buffer_reference, scalar) readonly buffer PlainCells {

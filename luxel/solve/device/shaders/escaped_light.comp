@@ -14,7 +14,6 @@ struct EscapedLight {
   float luminance2, second_luminance;
 };
 layout(buffer_reference, scalar) writeonly buffer AllLight { EscapedLight at[]; };
-layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
 layout(buffer_reference, scalar) readonly buffer Pixels { vec3 at[]; };
 
 // light::Surroundings
@@ -32,7 +31,7 @@ layout(push_constant, scalar) uniform Push {
   Elements elements;
   PlainCells plain;
   StoredHits hits;  // of the chunk
-  AllLight light;
+  AllLight light;  // of the chunk's elements
   uvec2 seed;
   uint element_count, samples;
   uint first_tile;  // of the chunk
@@ -51,7 +50,8 @@ vec3 soft_radiance(vec3 direction) {
 }
 
 void main() {
-  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, i = (first_tile + tile) * 64 + lane;
+  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
+  uint own = tile * 64 + lane, i = first_tile * 64 + own;
   if (i >= element_count) return;
   Element e = elements.at[i];
   uvec2 own_seed = hash64(seed, uvec2(i, 0));
@@ -69,5 +69,5 @@ void main() {
       if (2 * sample_number >= samples) sum.second_luminance += l;
     }
   }
-  light.at[i] = sum;
+  light.at[own] = sum;
 }

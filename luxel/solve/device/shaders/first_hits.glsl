@@ -3,7 +3,6 @@
 #include "element_rays.glsl"
 layout(local_size_x = 64) in;
 
-layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
 // Of 64 elements after each other: the first ray of each, the second of each and so on, in the order
 // of cells.
 layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };

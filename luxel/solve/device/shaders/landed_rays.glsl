@@ -15,12 +15,12 @@ layout(buffer_reference, scalar) buffer OpenRays {
   uint capacity;
   OpenRay at[];
 };
-// Per element: rays that left the scene, met the back of a one-sided surface, and that of another.
+// Per element of the chunk: rays that left the scene, met the back of a one-sided surface, and that
+// of another.
 struct Counts {
   uint escaped, dark_back, lit_back;
 };
 layout(buffer_reference, scalar) buffer AllCounts { Counts at[]; };
-layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
 
 layout(buffer_reference, scalar) buffer Setup {
   World world;
@@ -73,7 +73,7 @@ uvec2 end_of(uint element, uint place, uint sample_number, Hit hit, inout Counts
 
 void main() {
   uint group = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
-  uint cell = group % kCells, tile = group / kCells, i = (first_tile + tile) * 64 + lane;
+  uint cell = group % kCells, tile = group / kCells, own = tile * 64 + lane, i = first_tile * 64 + own;
   if (i >= setup.element_count) return;
   Element e = setup.elements.at[i];
   uint samples = setup.samples;
@@ -89,7 +89,7 @@ void main() {
     hits.at[(tile * samples + place) * 64 + lane] = end_of(i, place, sample_number, hit, counts);
   }
   // Whole numbers: their sum is the same in any order.
-  if (counts.escaped > 0) atomicAdd(setup.counts.at[i].escaped, counts.escaped);
-  if (counts.dark_back > 0) atomicAdd(setup.counts.at[i].dark_back, counts.dark_back);
-  if (counts.lit_back > 0) atomicAdd(setup.counts.at[i].lit_back, counts.lit_back);
+  if (counts.escaped > 0) atomicAdd(setup.counts.at[own].escaped, counts.escaped);
+  if (counts.dark_back > 0) atomicAdd(setup.counts.at[own].dark_back, counts.dark_back);
+  if (counts.lit_back > 0) atomicAdd(setup.counts.at[own].lit_back, counts.lit_back);
 }

@@ -50,21 +50,21 @@ uint64_t end_tile(const TraceScene& in, const RayScene& scene, std::span<const O
 
 }  // namespace
 
-Result<std::vector<HitTile>> end_open_rays(const TraceScene& in, std::span<const OpenRay> rays,
-                                           const TraceParams& params, TracedHits& hits,
-                                           Progress& progress) {
-  LUXEL_CHECK(!params.parts && !params.keep && !params.earlier);
-  const size_t n = hits.size();
-  const SceneOfRays scene(in, params);
-  std::vector<HitTile> out((n + kTileElements - 1) / kTileElements);
+Result<std::vector<HitTile>> end_open_rays(const SceneOfRays& scene, const TraceScene& in,
+                                           size_t begin, size_t end, std::span<const OpenRay> rays,
+                                           TracedHits& hits, Progress& progress) {
+  LUXEL_CHECK(begin % kTileElements == 0 && begin <= end && end <= hits.size());
+  std::vector<HitTile> out((end - begin + kTileElements - 1) / kTileElements);
   std::atomic<uint64_t> more{0};
   BufferPool<RayBuffers> pool;
-  parallel_for(n, kTileElements, [&](size_t begin, size_t end) {
+  parallel_for(out.size(), 1, [&](size_t t, size_t) {
     if (progress.cancelled()) return;
+    const size_t first = begin + t * kTileElements, last = std::min(first + kTileElements, end);
     RayBuffers buffers = pool.take();
     RayTile tile;
-    more += end_tile(in, scene.rays(), rays_of(rays, begin, end), begin, end, buffers, hits, tile);
-    out[begin / kTileElements] = std::move(tile.hits);
+    more +=
+        end_tile(in, scene.rays(), rays_of(rays, first, last), first, last, buffers, hits, tile);
+    out[t] = std::move(tile.hits);
     pool.give(std::move(buffers));
   });
   hits.rays += more;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/solve/gather/trace/scene_of_rays.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
@@ -14,13 +15,13 @@ struct OpenRay {
   trace::Hit hit;  ///< of a surface
 };
 
-/// Takes such rays to their ends as trace_more() takes those that it traces: counts what they have
-/// met, notes what they bring without the map, and returns their hits, in tiles of kTileElements.
-/// `rays`: element after element, of each element's first round. `hits` knows its samples, all of
-/// which are counted, and what its other rays have met. In params neither parts, keep nor earlier.
-/// Errors: cancelled.
-Result<std::vector<HitTile>> end_open_rays(const TraceScene& in, std::span<const OpenRay> rays,
-                                           const TraceParams& params, TracedHits& hits,
-                                           Progress& progress);
+/// Takes such rays of elements [begin, end) to their ends as trace_more() takes those that it
+/// traces: counts what they have met, notes what they bring without the map, and returns their
+/// hits, in tiles of kTileElements, of which `begin` is a multiple. `rays`: element after element,
+/// of each element's first round. `hits` knows the samples of these elements, all of which are
+/// counted, and what their other rays have met. Errors: cancelled.
+Result<std::vector<HitTile>> end_open_rays(const SceneOfRays& scene, const TraceScene& in,
+                                           size_t begin, size_t end, std::span<const OpenRay> rays,
+                                           TracedHits& hits, Progress& progress);
 
 }  // namespace luxel::gather

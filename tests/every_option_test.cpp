@@ -65,6 +65,7 @@ Options values_of(const Inputs& in) {
       {"--codec", "lowrank"},
       {"--denoise", ""},
       {"--direct-samples", "3"},
+      {"--device", "auto"},
       {"--devices", ""},
       {"--directional", "sh1"},
       {"--element-size", "0.5"},

@@ -3,11 +3,13 @@
 
 #include "apps/cli/cli.h"
 #include "luxel/arguments/bake_options.h"
+#include "luxel/gpu/device_choice.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
+#include "luxel/solve/device/gather_device.h"
 
 namespace luxel::cli {
 namespace {
@@ -15,6 +17,7 @@ namespace {
 struct BakeOptions {
   Common common;
   BakeChoice choice;
+  std::string device = "cpu";
 };
 
 /// How far the light is off, as far as the solver knows, and where most.
@@ -40,12 +43,13 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
   const size_t pages = json["atlas"]["pages"].size();
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s",
+      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s{}",
                   counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
                   pages == 1 ? "" : fmt::format("{} pages of up to ", pages),
                   json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
-                  json["seconds"]["total"].get<double>())
+                  json["seconds"]["total"].get<double>(),
+                  json["device"] == "cpu" ? "" : ", with " + json["device"].get<std::string>())
           .c_str());
   if (const std::string error = error_text(settings, json); !error.empty())
     std::fprintf(stderr, "%s\n", error.c_str());
@@ -77,12 +81,36 @@ int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings)
   return run_and_print(options.common, work, print_plan);
 }
 
+/// An open device with its rays.
+struct OpenDevice {
+  std::unique_ptr<gpu::Device> device;
+  std::unique_ptr<gather::RayDevice> rays;
+  pipeline::BakeDevice for_bake;
+};
+
+/// What --device asks for; null: the processor. Errors: no such device.
+Result<std::unique_ptr<OpenDevice>> open_device(const std::string& text) {
+  LUXEL_TRY(const gpu::DeviceChoice choice, gpu::parse_device(text));
+  auto out = std::make_unique<OpenDevice>();
+  LUXEL_TRY(out->device, gpu::open_chosen(choice));
+  if (!out->device) return nullptr;
+  out->rays = device::gather_device(*out->device);
+  out->for_bake = {.rays = out->rays.get(),
+                   .name = out->device->name,
+                   .is_optional = choice.kind == gpu::DeviceChoice::Kind::any};
+  return out;
+}
+
 int run_bake(const BakeOptions& options) {
   const auto settings = settings_of(options.choice);
   if (!settings) return report(settings.error(), options.common);
   if (options.choice.plan) return run_plan(options, *settings);
+  const auto device = open_device(options.device);
+  if (!device) return report(device.error(), options.common);
+  const pipeline::BakeDevice* for_bake = *device ? &(*device)->for_bake : nullptr;
   return run_and_print(
-      options.common, [&](Progress& progress) { return pipeline::bake(*settings, progress); },
+      options.common,
+      [&](Progress& progress) { return pipeline::bake(*settings, progress, for_bake); },
       [&](const nlohmann::json& json) { print_summary(*settings, json); });
 }
 
@@ -96,9 +124,18 @@ void register_bake(CLI::App& app, Action& action) {
                    "Folder for the results; made when missing")
       ->required();
   auto* settings = add_bake_settings(*bake, options->choice);
-  bake->add_flag("--plan", options->choice.plan,
-                 "Do not bake: estimate time, memory and rays from a short trial (for " +
-                     pipeline::solvers_with("--plan") + ")");
+  auto* plan =
+      bake->add_flag("--plan", options->choice.plan,
+                     "Do not bake: estimate time, memory and rays from a short trial (for " +
+                         pipeline::solvers_with("--plan") + ")");
+  bake->add_option("--device", options->device,
+                   "What traces the first round of gather's rays, and adds up what rays bring: "
+                   "cpu; gpu, a graphics card; gpu:N or gpu:TEXT, the device of that number or "
+                   "with that text in its name (luxel info --devices); auto, a graphics card where "
+                   "there is one that can")
+      ->type_name("cpu|gpu|gpu:NAME|auto")
+      ->capture_default_str()
+      ->excludes(plan);
   add_bake_table(*bake, options->choice.given);
   add_common(*bake, options->common);
   bake->callback([options, scene, settings, &action] {

@@ -79,11 +79,16 @@ int run_devices(const InfoOptions& options) {
     std::printf("no device: %s\n", devices.error().message.c_str());
     return kDone;
   }
-  for (const gpu::DeviceInfo& d : *devices)
-    std::printf("%s: %s%s%s\n", d.name.c_str(), kind_of(d.type),
-                d.lacks.empty() ? "; luxel-view draws on it, luxel bench gpu traces rays"
-                                : "; luxel cannot use it, for it lacks ",
-                d.lacks.c_str());
+  for (size_t i = 0; i < devices->size(); ++i) {
+    const gpu::DeviceInfo& d = (*devices)[i];
+    const std::string use = d.lacks.empty()
+                                ? fmt::format(
+                                      "; luxel bake --device gpu:{} traces rays on it, luxel-view "
+                                      "draws on it",
+                                      i)
+                                : "; luxel cannot use it, for it lacks " + d.lacks;
+    std::printf("%s: %s%s\n", d.name.c_str(), kind_of(d.type), use.c_str());
+  }
   return kDone;
 }
 

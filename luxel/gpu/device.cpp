@@ -208,6 +208,34 @@ std::string names_of(const std::vector<Candidate>& all) {
   return out;
 }
 
+/// Whether it is a device that `params` asks for; `number` is its own.
+bool is_wanted(const Candidate& candidate, uint32_t number, const DeviceParams& params) {
+  if (!candidate.info.lacks.empty()) return false;
+  if (params.number) return *params.number == number;
+  if (params.name.empty())
+    return params.may_be_software || candidate.info.type != VK_PHYSICAL_DEVICE_TYPE_CPU;
+  return lower(candidate.info.name).find(lower(params.name)) != std::string::npos;
+}
+
+/// Why none of them is the one.
+tl::unexpected<Error> no_such_device(const std::vector<Candidate>& all,
+                                     const DeviceParams& params) {
+  if (params.number)
+    return fail(ErrorCode::no_device,
+                "no device that can be used has the number {}; there are, from 0 on: {}",
+                *params.number, names_of(all));
+  if (!params.name.empty())
+    return fail(ErrorCode::no_device, "no device that can be used is named '{}'; there are: {}",
+                short_message(params.name), names_of(all));
+  if (!params.may_be_software)
+    return fail(ErrorCode::no_device,
+                "there is no graphics card that can be used, only: {}; software that runs on the "
+                "processor is used where it is named",
+                names_of(all));
+  return fail(ErrorCode::no_device, "no device of this machine can be used: {}; {}", names_of(all),
+              kNoDevice);
+}
+
 }  // namespace
 
 Status check(VkResult result, std::string_view what) {
@@ -257,17 +285,12 @@ Status Device::open_instance(const DeviceParams& params) {
 
 Status Device::choose(const DeviceParams& params) {
   LUXEL_TRY(const std::vector<Candidate> all, candidates(instance));
-  for (const Candidate& candidate : all) {
-    if (!candidate.info.lacks.empty()) continue;
-    if (lower(candidate.info.name).find(lower(params.name)) == std::string::npos) continue;
-    physical = candidate.device, name = candidate.info.name;
+  for (uint32_t i = 0; i < all.size(); ++i) {
+    if (!is_wanted(all[i], i, params)) continue;
+    physical = all[i].device, name = all[i].info.name;
     return {};
   }
-  if (params.name.empty())
-    return fail(ErrorCode::no_device, "no device of this machine can be used: {}; {}",
-                names_of(all), kNoDevice);
-  return fail(ErrorCode::no_device, "no device that can be used is named '{}'; there are: {}",
-              short_message(params.name), names_of(all));
+  return no_such_device(all, params);
 }
 
 Status Device::open_device(const DeviceParams& params) {

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,7 +21,10 @@ namespace luxel::gpu {
 
 /// The choice of a device, and how it is opened.
 struct DeviceParams {
-  std::string name;       ///< a part of it, in small or capital letters; empty: the fastest kind
+  std::string name;  ///< a part of it, in small or capital letters; empty: the fastest kind
+  std::optional<uint32_t> number;  ///< instead of a name: that of list_devices(), from 0 on
+  /// Without a name or a number: whether it may be software that runs on the processor.
+  bool may_be_software = true;
   bool validate = false;  ///< with Vulkan's validation layer: Device::messages()
   /// What a window needs of Vulkan (glfwGetRequiredInstanceExtensions); empty: nothing is shown.
   std::vector<std::string> window_extensions;
@@ -40,8 +44,8 @@ Result<std::vector<DeviceInfo>> list_devices();
 /// Holds a device and what it was opened with. Everything made on it must end before it does.
 class Device {
  public:
-  /// Errors (ErrorCode::no_device): no Vulkan, no device of that name or none that has what luxel
-  /// needs, no validation layer where it is asked for.
+  /// Errors (ErrorCode::no_device): no Vulkan, no device of that name or number or none that has
+  /// what luxel needs, no validation layer where it is asked for.
   static Result<std::unique_ptr<Device>> open(const DeviceParams& params);
   ~Device();
   Device(const Device&) = delete;

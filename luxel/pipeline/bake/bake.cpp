@@ -54,14 +54,15 @@ Result<FinishedFiles> finished_files(const BakeSettings& settings, const Bake& b
 
 }  // namespace
 
-Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
+Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
+                            const BakeDevice* device) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings));
   BakeCache cache(settings, settings_of_kept_bake(settings));
-  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache}));
+  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());
   if (!cache.failure().empty()) result.warnings.push_back(cache.failure());

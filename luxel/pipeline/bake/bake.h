@@ -10,13 +10,16 @@
 namespace luxel::pipeline {
 
 struct Bake;
+struct BakeDevice;
 
 /// bake_scene(), then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
 /// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
 /// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to
 /// its end leaves its checkpoint, nothing else; one that does leaves DIR/cache with settings.keep.
-Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
+/// A bake on a `device` has no checkpoint; null: the processor's.
+Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
+                            const BakeDevice* device = nullptr);
 
 /// Writes what bake() leaves of a bake that bake_scene() made, whose stages are those of `baked`.
 /// Returns what bake.json holds. Errors: those of files; cancelled.

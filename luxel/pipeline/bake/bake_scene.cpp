@@ -10,6 +10,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
+#include "luxel/pipeline/bake/bake_device.h"
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/pipeline/bake/denoise_light.h"
@@ -153,15 +154,16 @@ SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& 
 }
 
 /// The rest of bake_scene() for a bake that has its scene.
-Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
-                   const BakeObserver& watcher, Bake& bake, Progress& progress) {
+Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const BakeObserver& watcher,
+                   Bake& bake, Progress& progress) {
+  LUXEL_TRY(const Keepers keepers, settle_device(settings, wanted, bake.warnings));
   LUXEL_TRY(const std::vector<uint32_t> masked, masked_lights(settings, bake.scene));
   LUXEL_TRY_STATUS(check_view(settings.view, bake.scene, settings.scene.string()));
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
   const SolveStores stores{keepers.checkpoint ? keepers.checkpoint->parts() : nullptr,
-                           keepers.cache};
+                           keepers.cache, keepers.device};
   SolveObserver observer;
   if (watcher.on_estimate)
     observer = observer_of(watcher, input);

@@ -27,8 +27,9 @@ class Checkpoint;
 
 /// What outlives a bake, or outlived the one before; null where there is nothing of the kind.
 struct Keepers {
-  Checkpoint* checkpoint = nullptr;
+  Checkpoint* checkpoint = nullptr;  ///< not looked at by a bake on a device
   BakeCache* cache = nullptr;
+  const BakeDevice* device = nullptr;
 };
 
 /// A finished bake in memory, before anything is written.
@@ -81,7 +82,7 @@ Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::s
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
 /// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:
-/// whatever the stages say; settings out of range.
+/// whatever the stages say; settings out of range; settings that a device does not know.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
                         const Keepers& keepers = {}, const BakeObserver& observer = {});
 

@@ -18,6 +18,7 @@ struct Capabilities {
   bool scatters = false;        ///< follows light that surfaces scatter through
   bool parts = false;           ///< keeps its finished parts: --checkpoint, --resume
   bool keeps = false;           ///< leaves what later bakes can build on: --keep
+  bool device = false;          ///< has rays that a graphics device can trace
   bool vertex_light = false;    ///< solves for light per vertex: --vertex-colors
 };
 

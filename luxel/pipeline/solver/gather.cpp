@@ -18,6 +18,7 @@
 #include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/solve/gather/forecast/forecast.h"
 #include "luxel/solve/gather/gather.h"
+#include "luxel/solve/gather/rays/ray_device.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -164,9 +165,33 @@ KeptBake kept_bake(const light::TexelScene& in, const light::LightLayers& layers
 /// Drops layers that nobody has asked for.
 void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.layer_irradiance); }
 
-}  // namespace
+/// Whether the processor may do what a device has failed at.
+bool is_of_device(const Error& error) {
+  return error.code == ErrorCode::unsupported || error.code == ErrorCode::no_device ||
+         error.code == ErrorCode::out_of_memory;
+}
 
-namespace {
+/// gather() with the first rays on the device, if there is one; where that is optional and fails,
+/// all of it on the processor. `device` gets the name of that which had the rays. Errors: those of
+/// gather().
+Result<gather::Gather> gather_on(const BakeDevice* on, const light::TexelScene& in,
+                                 const light::LightLayers* layers,
+                                 const gather::GatherParams& params, gather::GatherStores stores,
+                                 const gather::GatherObserver& observer, std::string& device,
+                                 std::vector<std::string>& warnings, Progress& progress) {
+  if (!on) return gather::gather(in, layers, params, stores, observer, progress);
+  stores.device = on->rays;
+  gather::GatherObserver first = observer;
+  if (on->is_optional) first.on_traced = {};  // the processor would look at those places again
+  auto out = gather::gather(in, layers, params, stores, first, progress);
+  if (out) device = on->name;
+  if (out || !on->is_optional || !is_of_device(out.error())) return out;
+  on->rays->forget();
+  warnings.push_back(
+      fmt::format("baked on the processor, not on {}: {}", on->name, out.error().message));
+  stores.device = nullptr;
+  return gather::gather(in, layers, params, stores, observer, progress);
+}
 
 Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings& settings,
                                 const SolveStores& stores, const SolveObserver& observer,
@@ -197,23 +222,27 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
       bytes_of_gather(in, settings, stores, bool(observer.on_estimate), layers.size());
   LUXEL_TRY(own.hit_memory_bytes, memory_to_spare(in, settings, bytes, kMinHitBytes));
   std::vector<std::string> warnings;
+  // The trial is the processor's, and says nothing of a device.
+  const bool looks_ahead = !stores.device || settings.time_budget_s > 0;
   if (earlier)
     own.earlier = &*earlier;
-  else
+  else if (looks_ahead)
     LUXEL_TRY_STATUS(look_ahead(in, settings, own, params, warnings, progress));
   // Not for the trial; and the light of layers is not kept yet.
   if (!told_apart && !params.tells_direct) own.parts = stores.parts;
   if (keeps) own.keep = stores.cache->rays();
-  LUXEL_TRY(gather::Gather result, gather::gather(in, told_apart, params, own,
-                                                  {.on_estimate = observer.on_estimate,
-                                                   .guess = observer.guess,
-                                                   .is_watched = observer.is_watched,
-                                                   .on_bounce = observer.on_bounce,
-                                                   .on_traced = observer.on_traced},
-                                                  progress));
+  const gather::GatherObserver watcher{.on_estimate = observer.on_estimate,
+                                       .guess = observer.guess,
+                                       .is_watched = observer.is_watched,
+                                       .on_bounce = observer.on_bounce,
+                                       .on_traced = observer.on_traced};
+  std::string device;
+  LUXEL_TRY(gather::Gather result, gather_on(stores.device, in, told_apart, params, own, watcher,
+                                             device, warnings, progress));
   const light::LightLayers all_layers = layers;
   const gather::SourceLight sources = std::move(result.sources);
   TexelLight out = light_of(result, layers);
+  out.device = std::move(device);
   if (keeps) stores.cache->keep(kept_bake(in, all_layers, result, out));
   if (settings.layers == light::LayerMode::none) drop_layers(out);
   if (settings.max_error > 0 || settings.time_budget_s > 0)
@@ -237,7 +266,8 @@ Solver gather_solver() {
                   .direct = true,
                   .scatters = true,
                   .parts = true,
-                  .keeps = true},
+                  .keeps = true,
+                  .device = true},
           .solve = solve_gather,
           .plan = plan_gather};
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "luxel/base/random.h"
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 
 namespace luxel::pipeline {
 namespace {

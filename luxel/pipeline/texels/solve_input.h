@@ -15,14 +15,27 @@
 #include "luxel/scene/scene.h"
 #include "luxel/solve/hemicube/observer.h"
 
+namespace luxel::gather {
+class RayDevice;
+}
+
 namespace luxel::pipeline {
 
 class BakeCache;
+
+/// A graphics device for rays.
+struct BakeDevice {
+  gather::RayDevice* rays = nullptr;  ///< not null
+  std::string name;                   ///< what bake.json calls it
+  /// Where the device cannot have the bake, or fails, the processor has it, with a warning.
+  bool is_optional = false;
+};
 
 /// What outlives a solver; null where there is nothing of the kind.
 struct SolveStores {
   PartStore* parts = nullptr;  ///< where its finished parts are kept and found
   BakeCache* cache = nullptr;  ///< what it builds on, and where it keeps itself for later bakes
+  const BakeDevice* device = nullptr;
 };
 
 /// Who watches a solver; nothing where nobody does.
@@ -72,6 +85,7 @@ struct TexelLight {
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files
   uint64_t elements = 0;           ///< of the solver's own mesh, when it has one
+  std::string device;              ///< BakeDevice::name, if it traced rays
   std::vector<std::string> warnings;
   std::optional<VertexLit> vertex_lit;  ///< with --vertex-colors
 };

@@ -1,0 +1,50 @@
+#include "luxel/gpu/device_choice.h"
+
+#include <charconv>
+
+#include "luxel/base/short_message.h"
+
+namespace luxel::gpu {
+namespace {
+
+/// Longer ones are names: "gpu:4090".
+constexpr size_t kDigitsOfANumber = 2;
+
+/// The number that all of the text is; none where it is a part of a name.
+std::optional<uint32_t> number_of(std::string_view text) {
+  if (text.size() > kDigitsOfANumber) return std::nullopt;
+  uint32_t out = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return out;
+}
+
+}  // namespace
+
+Result<DeviceChoice> parse_device(std::string_view text) {
+  using Kind = DeviceChoice::Kind;
+  constexpr std::string_view kNamed = "gpu:";
+  if (text == "cpu") return DeviceChoice{};
+  DeviceChoice out;
+  out.params.may_be_software = false;
+  out.kind = text == "auto" ? Kind::any : Kind::device;
+  if (text == "auto" || text == "gpu") return out;
+  if (!text.starts_with(kNamed) || text == kNamed)
+    return fail(ErrorCode::bad_setting,
+                "--device {} is not known; give cpu, gpu, gpu: with the number or a part of the "
+                "name of a device of luxel info --devices, or auto",
+                short_message(std::string(text)));
+  text.remove_prefix(kNamed.size());
+  out.params.number = number_of(text);
+  if (!out.params.number) out.params.name = text;
+  return out;
+}
+
+Result<std::unique_ptr<Device>> open_chosen(const DeviceChoice& choice) {
+  if (choice.kind == DeviceChoice::Kind::processor) return nullptr;
+  auto device = Device::open(choice.params);
+  if (!device && choice.kind == DeviceChoice::Kind::any) return nullptr;
+  return device;
+}
+
+}  // namespace luxel::gpu

@@ -1,0 +1,27 @@
+// The value of --device.
+#pragma once
+
+#include "luxel/gpu/device.h"
+
+namespace luxel::gpu {
+
+/// Whether the processor works alone.
+struct DeviceChoice {
+  enum class Kind : uint8_t {
+    processor,  ///< "cpu": alone
+    device,     ///< "gpu": the first graphics card; "gpu:1": the device of that number, from 0 on,
+                ///< of two digits at most; "gpu:TEXT": the first device whose name holds the text
+    any,        ///< "auto": a graphics card where there is one
+  };
+  Kind kind = Kind::processor;
+  DeviceParams params;
+};
+
+/// Errors (bad_setting): the text is none of these.
+Result<DeviceChoice> parse_device(std::string_view text);
+
+/// Null for the processor, and where there is none of Kind::any. Errors: those of Device::open()
+/// for Kind::device.
+Result<std::unique_ptr<Device>> open_chosen(const DeviceChoice& choice);
+
+}  // namespace luxel::gpu

@@ -1,0 +1,41 @@
+#include "luxel/pipeline/bake/bake_device.h"
+
+#include <algorithm>
+
+#include "luxel/pipeline/solver/solvers.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// The option that only the processor knows; empty: there is none.
+std::string only_on_the_processor(const BakeSettings& settings) {
+  if (!find_solver(settings.solver)->can.device) return "--solver " + settings.solver;
+  if (settings.keep) return "--keep";
+  if (settings.resume) return "--resume";
+  if (settings.layers != light::LayerMode::none)
+    return fmt::format("--layers {}", name_of(settings.layers));
+  if (settings.light != LightPart::all) return fmt::format("--light {}", name_of(settings.light));
+  return {};
+}
+
+}  // namespace
+
+Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepers,
+                              std::vector<std::string>& warnings) {
+  if (!keepers.device) return keepers;
+  Keepers out = keepers;
+  const std::string option = only_on_the_processor(settings);
+  if (option.empty()) {
+    out.checkpoint = nullptr, out.cache = nullptr;
+    return out;
+  }
+  const std::string why = option + " works on the processor alone";
+  if (!keepers.device->is_optional)
+    return fail(ErrorCode::bad_setting, "{}; leave it or --device out", why);
+  warnings.push_back(
+      fmt::format("baked on the processor, not on {}: {}", keepers.device->name, why));
+  out.device = nullptr;
+  return out;
+}
+
+}  // namespace luxel::pipeline

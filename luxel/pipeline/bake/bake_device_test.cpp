@@ -1,0 +1,111 @@
+// Bakes whose device refuses, or fails midway. The bakes of real devices:
+// tests/device_bake_test.cpp.
+#include "luxel/pipeline/bake/bake_device.h"
+
+#include <gmock/gmock.h>
+
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/gather/rays/ray_device.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Fails with an error when it is to trace.
+class FailingDevice final : public gather::RayDevice {
+ public:
+  explicit FailingDevice(ErrorCode code) : code_(code) {}
+  Status accepts(const gather::TraceScene&) const override { return {}; }
+  Status trace(const gather::TraceScene&, int, const gather::TraceParams&, gather::TracedHits&,
+               Progress&) override {
+    ++traced;
+    return fail(code_, "the cable is out");
+  }
+  Status sweep(const gather::RadiosityMap&, std::span<gather::Gathered>) override { return {}; }
+  void forget() override {}
+
+  int traced = 0;
+
+ private:
+  ErrorCode code_;
+};
+
+BakeSettings tiny_bake() {
+  BakeSettings settings;
+  settings.resolution = 16, settings.samples = 16;
+  return settings;
+}
+
+Result<Bake> bake(const BakeSettings& settings, const BakeDevice* device) {
+  Progress progress;
+  return bake_read_scene(scene::cornell_box(), settings, progress, {.device = device});
+}
+
+TEST(BakeDevice, ThatFailsEndsTheBake) {
+  FailingDevice rays(ErrorCode::no_device);
+  const BakeDevice device{.rays = &rays, .name = "a card"};
+  const auto light = bake(tiny_bake(), &device);
+  ASSERT_FALSE(light);
+  EXPECT_EQ(light.error().message, "the cable is out");
+  EXPECT_EQ(rays.traced, 1);
+}
+
+TEST(BakeDevice, ThatIsOptionalLeavesTheBakeToTheProcessor) {
+  const auto expected = bake(tiny_bake(), nullptr);
+  ASSERT_TRUE(expected);
+  for (const ErrorCode code :
+       {ErrorCode::no_device, ErrorCode::out_of_memory, ErrorCode::unsupported}) {
+    FailingDevice rays(code);
+    const BakeDevice device{.rays = &rays, .name = "a card", .is_optional = true};
+    const auto light = bake(tiny_bake(), &device);
+    ASSERT_TRUE(light) << light.error().message;
+    EXPECT_EQ(rays.traced, 1);
+    EXPECT_EQ(light->light.irradiance, expected->light.irradiance);
+    EXPECT_EQ(light->light.device, "");
+    EXPECT_THAT(light->warnings,
+                Contains("baked on the processor, not on a card: the cable is out"));
+  }
+}
+
+TEST(BakeDevice, WhoeverStopsABakeStopsItThere) {
+  FailingDevice rays(ErrorCode::cancelled);
+  const BakeDevice device{.rays = &rays, .name = "a card", .is_optional = true};
+  const auto light = bake(tiny_bake(), &device);
+  ASSERT_FALSE(light);
+  EXPECT_EQ(light.error().code, ErrorCode::cancelled);
+}
+
+TEST(BakeDevice, IsNotAskedForWhatOnlyTheProcessorKnows) {
+  BakeSettings hemicube = tiny_bake(), keep = tiny_bake(), resume = tiny_bake(),
+               layers = tiny_bake(), part = tiny_bake();
+  hemicube.solver = "hemicube", hemicube.samples = BakeSettings{}.samples;
+  keep.keep = true;
+  resume.resume = true;
+  layers.layers = light::LayerMode::per_light;
+  part.light = LightPart::indirect;
+  FailingDevice rays(ErrorCode::no_device);
+  const BakeDevice device{.rays = &rays, .name = "a card"};
+  const BakeDevice optional{.rays = &rays, .name = "a card", .is_optional = true};
+  for (const auto& [settings, option] :
+       {std::pair{hemicube, "--solver hemicube"}, std::pair{keep, "--keep"},
+        std::pair{resume, "--resume"}, std::pair{layers, "--layers per-light"},
+        std::pair{part, "--light indirect"}}) {
+    std::vector<std::string> warnings;
+    const auto refused = settle_device(settings, {.device = &device}, warnings);
+    ASSERT_FALSE(refused) << option;
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_setting);
+    EXPECT_THAT(refused.error().message, HasSubstr(option));
+    EXPECT_THAT(warnings, IsEmpty());
+    const auto settled = settle_device(settings, {.device = &optional}, warnings);
+    ASSERT_TRUE(settled);
+    EXPECT_EQ(settled->device, nullptr);
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr(option)));
+  }
+}
+
+}  // namespace
+}  // namespace luxel::pipeline

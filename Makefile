@@ -11,8 +11,8 @@ LUXEL := build/release/bin/luxel
 SOURCES := find . \( -path ./build -o -path './.*' -o -name node_modules \) -prune -o \
            \( -name '*.h' -o -name '*.cpp' \) -print0
 
-# ccache, where there is one, makes rebuilding cheap, in another clone too: it compares paths from
-# here on. It is never required.
+# ccache, where there is one, makes rebuilding cheap, in another clone too: it takes paths as relative
+# to this folder. It is never required.
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_SLOPPINESS ?= pch_defines,time_macros

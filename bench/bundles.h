@@ -48,7 +48,7 @@ void trace_as_gather(const BundleTrace& in, std::span<const uint32_t> elements,
 
 /// What traces the rays of a bundle.
 enum class BundleTracer : uint8_t {
-  embree,     ///< packets of 16 rays of one direction
+  embree,     ///< packets of rays of one direction
   projection  ///< parallel_hits() where bundles are flat and large enough; else Embree
 };
 void trace_bundles(const BundleTrace& in, const Bundles& bundles, BundleTracer by);

@@ -1,9 +1,6 @@
 // A map with a sun, shining through windows: gather against the path tracer.
-#include <algorithm>
-#include <numeric>
-
+#include "bench/judged_texels.h"
 #include "bench/scenes.h"
-#include "luxel/base/random.h"
 #include "luxel/import/environment.h"
 #include "luxel/import/import.h"
 #include "luxel/validate/agreement.h"
@@ -12,26 +9,6 @@ namespace luxel::bench {
 namespace {
 
 constexpr int kScenesMapPaths = 4096, kScenesMapSamples = 1024;
-constexpr size_t kJudged = 2500;
-
-/// Texels by chance, in order: paths are dear, and the more of them a texel gets the finer a
-/// difference it shows.
-std::vector<size_t> some_texels(size_t count) {
-  std::vector<size_t> all(count);
-  std::iota(all.begin(), all.end(), 0);
-  const size_t kept = std::min(kJudged, count);
-  for (size_t i = 0; i < kept; ++i) std::swap(all[i], all[i + hash64(1, i) % (count - i)]);
-  all.resize(kept);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-template <class T>
-std::vector<T> chosen(std::span<const T> values, std::span<const size_t> texels) {
-  std::vector<T> out;
-  for (const size_t i : texels) out.push_back(values[i]);
-  return out;
-}
 
 Status measure_at(const scene::Scene& scene, int resolution, Table& table) {
   Progress progress;

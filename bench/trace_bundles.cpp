@@ -8,7 +8,7 @@
 namespace luxel::bench {
 namespace {
 
-/// A packet of 16 rays has texels of a square of 4 x 4 of their set.
+/// 16 rays, a packet or two, have texels of a square of 4 x 4 of their set.
 constexpr uint32_t kBundleSide = 16 * kSetSide;
 static_assert(kBundleSide * kBundleSide / kSets == kParallelRays);
 /// So many directions of a bundle are traced before their hits are looked at: they stay in a core's

@@ -1,5 +1,5 @@
-// luxel bake --device: the real program on the software device of this machine, which all machines
-// with tests have. Skipped where there is none.
+// luxel bake --device: the real program on the software device of this machine. Skipped where there
+// is none.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -46,8 +46,7 @@ class BakeOnDevice : public ::testing::Test {
   std::string name_, option_;
 };
 
-// The rays that graze an edge differ, and no others: 0.2 % and, of all light, 0.02 % are the
-// issue's limits. FLIP of the preview is far below what eyes see.
+// Rays that graze an edge differ, and no others: 0.2 % of the mean, root mean square.
 TEST_F(BakeOnDevice, IsThatOfTheProcessor) {
   ASSERT_EQ(bake("cpu", "--quiet").code, 0);
   const CommandResult r = bake("gpu", option_);

@@ -89,11 +89,14 @@ struct OpenDevice {
 };
 
 /// What --device asks for; null: the processor. Errors: no such device.
-Result<std::unique_ptr<OpenDevice>> open_device(const std::string& text) {
-  LUXEL_TRY(const gpu::DeviceChoice choice, gpu::parse_device(text));
+Result<std::unique_ptr<OpenDevice>> open_device(const BakeOptions& options) {
+  LUXEL_TRY(const gpu::DeviceChoice choice, gpu::parse_device(options.device));
+  LUXEL_TRY(gpu::ChosenDevice chosen, gpu::open_chosen(choice));
+  if (!chosen.why_none.empty())
+    print_warnings({"baked on the processor: " + chosen.why_none}, options.common);
+  if (!chosen.device) return nullptr;
   auto out = std::make_unique<OpenDevice>();
-  LUXEL_TRY(out->device, gpu::open_chosen(choice));
-  if (!out->device) return nullptr;
+  out->device = std::move(chosen.device);
   out->rays = device::gather_device(*out->device);
   out->for_bake = {.rays = out->rays.get(),
                    .name = out->device->name,
@@ -105,7 +108,7 @@ int run_bake(const BakeOptions& options) {
   const auto settings = settings_of(options.choice);
   if (!settings) return report(settings.error(), options.common);
   if (options.choice.plan) return run_plan(options, *settings);
-  const auto device = open_device(options.device);
+  const auto device = open_device(options);
   if (!device) return report(device.error(), options.common);
   const pipeline::BakeDevice* for_bake = *device ? &(*device)->for_bake : nullptr;
   return run_and_print(

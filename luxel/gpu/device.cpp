@@ -230,7 +230,7 @@ tl::unexpected<Error> no_such_device(const std::vector<Candidate>& all,
   if (!params.may_be_software)
     return fail(ErrorCode::no_device,
                 "there is no graphics card that can be used, only: {}; software that runs on the "
-                "processor is used where it is named",
+                "processor is used only where its name or number is given",
                 names_of(all));
   return fail(ErrorCode::no_device, "no device of this machine can be used: {}; {}", names_of(all),
               kNoDevice);

@@ -1,5 +1,6 @@
 #include "luxel/gpu/device_choice.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "luxel/base/short_message.h"
@@ -17,6 +18,14 @@ std::optional<uint32_t> number_of(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return out;
+}
+
+/// Whether there is a device that is no software.
+bool has_card() {
+  const auto devices = list_devices();
+  return devices && std::ranges::any_of(*devices, [](const DeviceInfo& d) {
+           return d.type != VK_PHYSICAL_DEVICE_TYPE_CPU;
+         });
 }
 
 }  // namespace
@@ -40,11 +49,12 @@ Result<DeviceChoice> parse_device(std::string_view text) {
   return out;
 }
 
-Result<std::unique_ptr<Device>> open_chosen(const DeviceChoice& choice) {
-  if (choice.kind == DeviceChoice::Kind::processor) return nullptr;
+Result<ChosenDevice> open_chosen(const DeviceChoice& choice) {
+  if (choice.kind == DeviceChoice::Kind::processor) return ChosenDevice{};
   auto device = Device::open(choice.params);
-  if (!device && choice.kind == DeviceChoice::Kind::any) return nullptr;
-  return device;
+  if (device) return ChosenDevice{std::move(*device), {}};
+  if (choice.kind == DeviceChoice::Kind::device) return tl::unexpected(device.error());
+  return ChosenDevice{nullptr, has_card() ? device.error().message : std::string()};
 }
 
 }  // namespace luxel::gpu

@@ -5,7 +5,7 @@
 
 namespace luxel::gpu {
 
-/// Whether the processor works alone.
+/// What --device asks for.
 struct DeviceChoice {
   enum class Kind : uint8_t {
     processor,  ///< "cpu": alone
@@ -20,8 +20,12 @@ struct DeviceChoice {
 /// Errors (bad_setting): the text is none of these.
 Result<DeviceChoice> parse_device(std::string_view text);
 
-/// Null for the processor, and where there is none of Kind::any. Errors: those of Device::open()
-/// for Kind::device.
-Result<std::unique_ptr<Device>> open_chosen(const DeviceChoice& choice);
+struct ChosenDevice {
+  std::unique_ptr<Device> device;  ///< null: the processor has it
+  /// Why a graphics card that is there is not it, of Kind::any.
+  std::string why_none;
+};
+/// Errors: those of Device::open() for Kind::device.
+Result<ChosenDevice> open_chosen(const DeviceChoice& choice);
 
 }  // namespace luxel::gpu

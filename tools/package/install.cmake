@@ -30,7 +30,8 @@ set_target_properties(luxel-view PROPERTIES INSTALL_RPATH "$ORIGIN/${view_ui_fol
 install(FILES ${draco_archive} DESTINATION ${luxel_archives})
 
 # One by one, because install(DIRECTORY) would leave folders without headers, too. Without those of rooms
-# that are not installed: the devices', the window's and the tests'.
+# that are not installed (the devices', the window's and the tests'), and of Embree, which only trace
+# includes.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/luxel/*.h)
 list(FILTER headers EXCLUDE REGEX "(^luxel/(validate|gpu|view|trace/embree|trace/vulkan|solve/device)/|/test_|_test[_.]|/node_modules/)")
 foreach(header ${headers})

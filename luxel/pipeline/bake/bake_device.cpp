@@ -23,17 +23,14 @@ std::string only_on_the_processor(const BakeSettings& settings) {
 Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepers,
                               std::vector<std::string>& warnings) {
   if (!keepers.device) return keepers;
-  Keepers out = keepers;
   const std::string option = only_on_the_processor(settings);
-  if (option.empty()) {
-    out.checkpoint = nullptr, out.cache = nullptr;
-    return out;
-  }
+  if (option.empty()) return keepers;
   const std::string why = option + " works on the processor alone";
   if (!keepers.device->is_optional)
     return fail(ErrorCode::bad_setting, "{}; leave it or --device out", why);
   warnings.push_back(
       fmt::format("baked on the processor, not on {}: {}", keepers.device->name, why));
+  Keepers out = keepers;
   out.device = nullptr;
   return out;
 }

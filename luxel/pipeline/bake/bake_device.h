@@ -10,9 +10,9 @@
 
 namespace luxel::pipeline {
 
-/// The keepers of a bake with these settings: none but the device, or no device. Where the device
-/// is optional and cannot have the bake, `warnings` says why. Errors (bad_setting): it is not
-/// optional.
+/// The keepers of a bake with these settings: without a device that is optional and cannot have it,
+/// of which `warnings` says why. Errors (bad_setting): a device that is not optional cannot have
+/// it.
 Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepers,
                               std::vector<std::string>& warnings);
 

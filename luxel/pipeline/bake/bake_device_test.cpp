@@ -6,6 +6,7 @@
 
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/rays/ray_device.h"
+#include "luxel/solve/gather/rays/traced_hits.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -15,23 +16,30 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Fails with an error when it is to trace.
+/// Fails with an error when it is to trace, or only when it is to sweep.
 class FailingDevice final : public gather::RayDevice {
  public:
-  explicit FailingDevice(ErrorCode code) : code_(code) {}
+  explicit FailingDevice(ErrorCode code, bool traces = false) : code_(code), traces_(traces) {}
   Status accepts(const gather::TraceScene&) const override { return {}; }
-  Status trace(const gather::TraceScene&, int, const gather::TraceParams&, gather::TracedHits&,
-               Progress&) override {
+  Status trace(const gather::TraceScene&, int samples, const gather::TraceParams&,
+               gather::TracedHits& hits, Progress& progress) override {
     ++traced;
+    if (!traces_) return fail(code_, "the cable is out");
+    progress.begin("trace rays", 0);
+    for (size_t i = 0; i < hits.size(); ++i)
+      hits.samples[i] = hits.counted[i] = hits.escaped[i] = uint16_t(samples);
+    return {};
+  }
+  Status sweep(const gather::RadiosityMap&, std::span<gather::Gathered>) override {
     return fail(code_, "the cable is out");
   }
-  Status sweep(const gather::RadiosityMap&, std::span<gather::Gathered>) override { return {}; }
-  void forget() override {}
+  void forget() override { ++forgotten; }
 
-  int traced = 0;
+  int traced = 0, forgotten = 0;
 
  private:
   ErrorCode code_;
+  bool traces_;
 };
 
 BakeSettings tiny_bake() {
@@ -57,13 +65,16 @@ TEST(BakeDevice, ThatFailsEndsTheBake) {
 TEST(BakeDevice, ThatIsOptionalLeavesTheBakeToTheProcessor) {
   const auto expected = bake(tiny_bake(), nullptr);
   ASSERT_TRUE(expected);
-  for (const ErrorCode code :
-       {ErrorCode::no_device, ErrorCode::out_of_memory, ErrorCode::unsupported}) {
-    FailingDevice rays(code);
+  // By then the elements' places must still be there.
+  for (const auto& [code, traces] :
+       {std::pair{ErrorCode::no_device, false}, std::pair{ErrorCode::no_device, true},
+        std::pair{ErrorCode::out_of_memory, false}, std::pair{ErrorCode::unsupported, false}}) {
+    FailingDevice rays(code, traces);
     const BakeDevice device{.rays = &rays, .name = "a card", .is_optional = true};
     const auto light = bake(tiny_bake(), &device);
     ASSERT_TRUE(light) << light.error().message;
     EXPECT_EQ(rays.traced, 1);
+    EXPECT_EQ(rays.forgotten, 1);
     EXPECT_EQ(light->light.irradiance, expected->light.irradiance);
     EXPECT_EQ(light->light.device, "");
     EXPECT_THAT(light->warnings,

@@ -27,7 +27,7 @@ class Checkpoint;
 
 /// What outlives a bake, or outlived the one before; null where there is nothing of the kind.
 struct Keepers {
-  Checkpoint* checkpoint = nullptr;  ///< not looked at by a bake on a device
+  Checkpoint* checkpoint = nullptr;  ///< a bake on a device keeps nothing there
   BakeCache* cache = nullptr;
   const BakeDevice* device = nullptr;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
@@ -74,15 +75,17 @@ void shrink_first_round(const gather::Forecast& forecast, double seconds,
 /// Tells how long it will take, where a trial can know it and is worth it, and fits the first round
 /// into a time budget. With max_error it is told by gather, after the first round.
 Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
-                  const gather::GatherStores& stores, gather::GatherParams& params,
-                  std::vector<std::string>& warnings, Progress& progress) {
+                  const SolveStores& stores, const gather::GatherStores& own,
+                  gather::GatherParams& params, std::vector<std::string>& warnings,
+                  Progress& progress) {
   const std::vector<Stage> after = stages_after_solving(in, settings);
   progress.expect_at_end(after);
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
-  const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0;
+  // A trial is the processor's, and says nothing of a device.
+  const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0 && !stores.device;
   if (!trial && settings.time_budget_s <= 0) return {};
   LUXEL_TRY(const gather::Forecast forecast,
-            gather::forecast(in, params, stores, kTrialPart, progress));
+            gather::forecast(in, params, own, kTrialPart, progress));
   progress.finish();
   if (settings.time_budget_s <= 0) {
     progress.expect(stages_of(forecast));
@@ -171,26 +174,46 @@ bool is_of_device(const Error& error) {
          error.code == ErrorCode::out_of_memory;
 }
 
-/// gather() with the first rays on the device, if there is one; where that is optional and fails,
-/// all of it on the processor. `device` gets the name of that which had the rays. Errors: those of
+/// What gather() is called with.
+struct GatherCall {
+  const light::TexelScene& in;
+  const light::LightLayers* layers;
+  gather::GatherParams params;
+  gather::GatherStores stores;
+  gather::GatherObserver observer;
+};
+Result<gather::Gather> run(const GatherCall& call, Progress& progress) {
+  return gather::gather(call.in, call.layers, call.params, call.stores, call.observer, progress);
+}
+
+/// gather() with the first rays on a device. It keeps no parts: of the first round there are none.
+/// Errors: those of gather().
+Result<gather::Gather> run_on(const BakeDevice& on, GatherCall call, Progress& progress) {
+  call.stores.device = on.rays, call.stores.parts = nullptr;
+  // Where the device fails, the processor looks at all places again.
+  const std::function<void()> on_traced = std::move(call.observer.on_traced);
+  call.observer.on_traced = on.is_optional ? std::function<void()>() : on_traced;
+  auto out = run(call, progress);
+  if (out && on.is_optional && on_traced) on_traced();
+  return out;
+}
+
+/// gather() on the device, if there is one; where that is optional and fails, all of it on the
+/// processor, with a warning. `device` gets the name of that which had the rays. Errors: those of
 /// gather().
-Result<gather::Gather> gather_on(const BakeDevice* on, const light::TexelScene& in,
-                                 const light::LightLayers* layers,
-                                 const gather::GatherParams& params, gather::GatherStores stores,
-                                 const gather::GatherObserver& observer, std::string& device,
-                                 std::vector<std::string>& warnings, Progress& progress) {
-  if (!on) return gather::gather(in, layers, params, stores, observer, progress);
-  stores.device = on->rays;
-  gather::GatherObserver first = observer;
-  if (on->is_optional) first.on_traced = {};  // the processor would look at those places again
-  auto out = gather::gather(in, layers, params, stores, first, progress);
+Result<gather::Gather> run_on_any(const BakeDevice* on, GatherCall call, std::string& device,
+                                  std::vector<std::string>& warnings, Progress& progress) {
+  if (!on) return run(call, progress);
+  const auto start = Clock::now();
+  auto out = run_on(*on, call, progress);
   if (out) device = on->name;
   if (out || !on->is_optional || !is_of_device(out.error())) return out;
   on->rays->forget();
   warnings.push_back(
       fmt::format("baked on the processor, not on {}: {}", on->name, out.error().message));
-  stores.device = nullptr;
-  return gather::gather(in, layers, params, stores, observer, progress);
+  if (call.params.seconds > 0)
+    call.params.seconds = std::max(call.params.seconds - seconds_since(start), 1e-3);
+  return run(call, progress);
 }
 
 Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings& settings,
@@ -222,23 +245,21 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
       bytes_of_gather(in, settings, stores, bool(observer.on_estimate), layers.size());
   LUXEL_TRY(own.hit_memory_bytes, memory_to_spare(in, settings, bytes, kMinHitBytes));
   std::vector<std::string> warnings;
-  // The trial is the processor's, and says nothing of a device.
-  const bool looks_ahead = !stores.device || settings.time_budget_s > 0;
   if (earlier)
     own.earlier = &*earlier;
-  else if (looks_ahead)
-    LUXEL_TRY_STATUS(look_ahead(in, settings, own, params, warnings, progress));
+  else
+    LUXEL_TRY_STATUS(look_ahead(in, settings, stores, own, params, warnings, progress));
   // Not for the trial; and the light of layers is not kept yet.
   if (!told_apart && !params.tells_direct) own.parts = stores.parts;
   if (keeps) own.keep = stores.cache->rays();
-  const gather::GatherObserver watcher{.on_estimate = observer.on_estimate,
-                                       .guess = observer.guess,
-                                       .is_watched = observer.is_watched,
-                                       .on_bounce = observer.on_bounce,
-                                       .on_traced = observer.on_traced};
+  const GatherCall call{in, told_apart, params, own,
+                        gather::GatherObserver{.on_estimate = observer.on_estimate,
+                                               .guess = observer.guess,
+                                               .is_watched = observer.is_watched,
+                                               .on_bounce = observer.on_bounce,
+                                               .on_traced = observer.on_traced}};
   std::string device;
-  LUXEL_TRY(gather::Gather result, gather_on(stores.device, in, told_apart, params, own, watcher,
-                                             device, warnings, progress));
+  LUXEL_TRY(gather::Gather result, run_on_any(stores.device, call, device, warnings, progress));
   const light::LightLayers all_layers = layers;
   const gather::SourceLight sources = std::move(result.sources);
   TexelLight out = light_of(result, layers);

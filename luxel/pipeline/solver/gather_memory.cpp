@@ -50,8 +50,9 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
   const bool scatters = !in.elements.transmittance.empty();
   const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0 || shows ||
                       (stores.cache && stores.cache->found());
-  const uint64_t given_back =
-      looks_at_places(settings) || shows ? 0 : transport::kPlaceBytesPerElement * n;
+  const bool keeps_places =
+      looks_at_places(settings) || shows || (stores.device && stores.device->is_optional);
+  const uint64_t given_back = keeps_places ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;
   const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;
   const bool guides = settings.max_error > 0 &&

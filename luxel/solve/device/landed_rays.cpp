@@ -19,7 +19,8 @@
 namespace luxel::device {
 namespace {
 
-/// Rays that the processor ends have at most one hit each, and hits are numbered in 32 bits.
+/// Rays that the processor ends have at most one hit each. Hits are numbered in 32 bits, half of
+/// which leaves room for those of the buffer that goes beyond this.
 constexpr uint64_t kMostOpen = (uint64_t(1) << 31) - 1;
 
 // Structs of landed_rays.glsl and escaped_light.comp.

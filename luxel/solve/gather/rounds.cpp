@@ -29,7 +29,8 @@ constexpr double kNoiseWorthAGuide = 3;
 /// takes as long per ray as the last round, and bounces grow with the number of all rays.
 double affordable_rays(const Progressive& light, double seconds_left) {
   const double rays = double(light.hits.rays), bounces_s = light.bounced_s * (1 + kFineOverRough);
-  // Where all rays were found, some are traced to know what they take.
+  if (seconds_left <= 0) return 0;
+  // Where all rays were found, or a device's, some are traced to know what they take.
   if (light.traced_rays == 0) return kSmallestRound * rays;
   const double per_ray = light.traced_s / double(std::max<uint64_t>(light.traced_rays, 1));
   return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
@@ -46,6 +47,7 @@ uint64_t added_samples(const TracedHits& hits, std::span<const uint16_t> target)
 /// Tells the watcher what is still to come, when an error is asked for.
 void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
                    const Progressive& light, Progress& progress) {
+  if (light.traced_samples == 0) return;  // nobody knows yet what they take
   std::vector<uint64_t> rounds;
   if (params.error_measure == ErrorMeasure::p95)
     rounds = rounds_to_come(light.errors.all, light.errors.gathered, params.max_error,

@@ -92,9 +92,9 @@ TEST_F(LxrMakerTest, HasTheLampsAsTheyAreEdited) {
 TEST_F(LxrMakerTest, StopsSoonAndLeavesNothing) {
   to_make_.read = *read_scene(scene::cornell_box(), pipeline::BakeSettings{});
   to_make_.now = unedited(to_make_.read->scene);
-  // 268 million rays: minutes of a processor.
-  to_make_.settings.matrix.patches.count = 16384;
-  to_make_.settings.matrix.factors.rays_per_patch = 16384;
+  // 2 billion rays: minutes of a processor.
+  to_make_.settings.matrix.patches.count = 32768;
+  to_make_.settings.matrix.factors.rays_per_patch = 65535;
   for (const int milliseconds : {0, 20, 300}) {
     auto maker = LxrMaker::begin(to_make_);
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));

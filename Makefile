@@ -11,13 +11,10 @@ LUXEL := build/release/bin/luxel
 SOURCES := find . \( -path ./build -o -path './.*' -o -name node_modules \) -prune -o \
            \( -name '*.h' -o -name '*.cpp' \) -print0
 
-# ccache, where there is one, makes rebuilding cheap, in another clone too: it takes paths as relative
-# to this folder. It is never required.
+# ccache, where there is one, makes rebuilding cheap. It is never required.
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_SLOPPINESS ?= pch_defines,time_macros
-export CCACHE_BASEDIR ?= $(CURDIR)
-export CCACHE_NOHASHDIR ?= 1
 endif
 # One compiler for every GB of memory, at most one per core: Debian machines swap otherwise.
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \

@@ -1,4 +1,4 @@
-// Which texels direct light varies in.
+// Texels in which direct light varies.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,10 @@
 #include "luxel/solve/device/landed_rays.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
-#include "luxel/base/parallel.h"
 #include "luxel/gpu/pieces.h"
 #include "luxel/solve/device/landings.h"
 #include "luxel/solve/device/open_list.h"

@@ -61,6 +61,19 @@ TEST_F(BakeOnDevice, IsThatOfTheProcessor) {
   EXPECT_EQ(c.code, 0) << c.out << c.err;
 }
 
+// Hemicubes are the device's, what they are summed up to is the processor's.
+TEST_F(BakeOnDevice, ByHemicubesIsThatOfTheProcessor) {
+  const std::string small = "--solver hemicube --hemicube 16 --max-elements 600 --quiet ";
+  ASSERT_EQ(bake("cpu", small).code, 0);
+  const CommandResult r = bake("gpu", small + option_);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(report("gpu")["device"], name_);
+  const CommandResult c =
+      luxel("compare " + (scratch_.path / "cpu").string() + " " + (scratch_.path / "gpu").string() +
+            " --max-rmse-over-mean 0.002 --json");
+  EXPECT_EQ(c.code, 0) << c.out << c.err;
+}
+
 TEST_F(BakeOnDevice, GivesTheSameBitsEachTime) {
   ASSERT_EQ(bake("once", option_ + " --quiet").code, 0);
   ASSERT_EQ(bake("again", option_ + " --quiet --threads 1").code, 0);

@@ -9,6 +9,7 @@
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
+#include "luxel/solve/device/device_look.h"
 #include "luxel/solve/device/gather_device.h"
 
 namespace luxel::cli {
@@ -81,10 +82,11 @@ int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings)
   return run_and_print(options.common, work, print_plan);
 }
 
-/// An open device with its rays.
+/// An open device and what it does for solvers.
 struct OpenDevice {
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<gather::RayDevice> rays;
+  std::unique_ptr<hemicube::LookDevice> look;
   pipeline::BakeDevice for_bake;
 };
 
@@ -98,7 +100,9 @@ Result<std::unique_ptr<OpenDevice>> open_device(const BakeOptions& options) {
   auto out = std::make_unique<OpenDevice>();
   out->device = std::move(chosen.device);
   out->rays = device::gather_device(*out->device);
+  out->look = device::look_device(*out->device);
   out->for_bake = {.rays = out->rays.get(),
+                   .look = out->look.get(),
                    .name = out->device->name,
                    .is_optional = choice.kind == gpu::DeviceChoice::Kind::any};
   return out;
@@ -132,7 +136,8 @@ void register_bake(CLI::App& app, Action& action) {
                      "Do not bake: estimate time, memory and rays from a short trial (for " +
                          pipeline::solvers_with("--plan") + ")");
   bake->add_option("--device", options->device,
-                   "What traces the first round of gather's rays, and adds up what rays bring: "
+                   "What works out gather's first direct light and first round of rays, and adds "
+                   "up what rays bring; with --solver hemicube, what looks through hemicubes: "
                    "cpu; gpu, a graphics card; gpu:N or gpu:TEXT, the device of that number or "
                    "with that text in its name (luxel info --devices); auto, a graphics card where "
                    "there is one that can")

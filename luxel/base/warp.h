@@ -1,6 +1,7 @@
 // Maps from the unit square to directions: sample, density and inverse stand together.
 #pragma once
 
+#include "luxel/base/both_triangle.h"
 #include "luxel/base/vec.h"
 
 namespace luxel {
@@ -30,12 +31,8 @@ inline Vec3 uniform_sphere_sample(Vec2 u) {
 
 /// Barycentric coordinates of a point uniform on a triangle, continuous in u. [Heitz19]
 inline Barycentric triangle_sample(Vec2 u) {
-  if (u.y > u.x) {
-    const float a = u.x * 0.5f;
-    return {a, u.y - a};
-  }
-  const float b = u.y * 0.5f;
-  return {u.x - b, b};
+  const Vec2 at = both::point_of_triangle(u);
+  return {at.x, at.y};
 }
 /// [1/m^2]
 inline float triangle_pdf_area(float area_m2) { return 1.0f / area_m2; }

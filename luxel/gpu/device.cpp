@@ -306,6 +306,10 @@ Status Device::open_device(const DeviceParams& params) {
   queue_info.pQueuePriorities = &priority;
   Features wanted;
   for (const Need& need : kNeeds) need.in(wanted) = VK_TRUE;
+  VkPhysicalDeviceFeatures has{};
+  vkGetPhysicalDeviceFeatures(physical, &has);
+  has_doubles = has.shaderFloat64 == VK_TRUE;
+  wanted.base.features.shaderFloat64 = has.shaderFloat64;
   std::vector<const char*> extensions(std::begin(kExtensions), std::end(kExtensions));
   if (!params.window_extensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   auto info = structure<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);

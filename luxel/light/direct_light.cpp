@@ -220,7 +220,7 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
       const Receiver r{
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-          hash64(params.seed, params.same_points ? 0 : i)};
+          seed_of_element(params, i)};
       const LightAt light = direct_light_at(lit, params, r, batch);
       direct.irradiance[i] = light.irradiance;
       direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;

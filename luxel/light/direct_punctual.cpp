@@ -2,15 +2,12 @@
 #include <algorithm>
 
 #include "luxel/base/random.h"
-#include "luxel/base/warp.h"
+#include "luxel/light/both_punctual_light.h"
 #include "luxel/light/shadow_rays.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::light {
 namespace {
-
-/// Up to so many lights each one gets its shadow ray; of more, so many are drawn.
-constexpr size_t kMaxPunctual = 64;
 
 /// The directional light of that number, whose disc has some size: directions uniform in its cone.
 void aim_at_disc(const Lights& lights, size_t index, uint32_t source, int samples,
@@ -22,9 +19,9 @@ void aim_at_disc(const Lights& lights, size_t index, uint32_t source, int sample
   const float height = 2 * s * s;
   for (int k = 0; k < samples; ++k) {
     const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x5000 + index));
-    const float down = u.y * height, radius = std::sqrt(std::max(0.0f, down * (2 - down)));
     const float phi = 2 * kPi * u.x;
-    const Vec3 d = frame.to_world({radius * std::cos(phi), radius * std::sin(phi), 1 - down});
+    const Vec3 d =
+        frame.to_world(both::direction_in_disc(height, u, {std::cos(phi), std::sin(phi)}));
     const float w = std::max(0.0f, dot(d, r.normal));
     if (w > 0) add_shadow_ray(batch, r, {source, w, Rgb{1, 1, 1} * w}, d, INFINITY);
   }
@@ -62,7 +59,7 @@ void aim_at_punctual(const Lights& lights, size_t index, float chance, int sampl
 void aim_at_punctual_lights(const Lights& lights, int samples, const Receiver& r,
                             ShadowRayBatch& batch) {
   const size_t count = lights.punctual.size();
-  if (count <= kMaxPunctual) {
+  if (count <= kMaxAllPunctual) {
     for (size_t i = 0; i < count; ++i) aim_at_punctual(lights, i, 1, samples, r, batch);
     return;
   }
@@ -77,7 +74,7 @@ void aim_at_punctual_lights(const Lights& lights, int samples, const Receiver& r
   };
   RandomStream random{hash64(r.seed, 0x12)};
   draw_lights(lights.punctual_nodes, r.position, r.normal, leaf,
-              {.samples = int(kMaxPunctual), .start = random.next()}, batch.draws);
+              {.samples = int(kMaxAllPunctual), .start = random.next()}, batch.draws);
   for (const LightDraw& draw : batch.draws.draws)
     aim_at_punctual(lights, lights.punctual_order[draw.light], draw.chance, samples, r, batch);
 }

@@ -1,71 +1,24 @@
 // Shadow rays towards emissive triangles.
 #include <algorithm>
-#include <array>
 
 #include "luxel/base/random.h"
-#include "luxel/base/warp.h"
+#include "luxel/light/both_triangle_light.h"
 #include "luxel/light/light_draw.h"
 #include "luxel/light/shadow_rays.h"
 #include "luxel/light/spherical_triangle.h"
-#include "luxel/viewfactor/point_form_factor.h"
 
 namespace luxel::light {
 namespace {
 
-/// Up to so many lights every one is looked at; of more, some are drawn.
-constexpr size_t kMaxAll = 32;
-/// Below it a triangle is so small that sampling its area is as good, and more exact in floats.
-constexpr float kMinSolidAngle = 1e-3f;
+both::LightTriangle triangle_of(const TriangleLight& light) {
+  return {light.a, light.b, light.c, light.normal, light.area_m2, light.two_sided};
+}
 
-/// pi F(point -> triangle light): irradiance per unit of radiance, nothing in between. Zero in the
-/// light's own plane and behind a one-sided light.
 float irradiance_per_radiance(const TriangleLight& light, Vec3 position, Vec3 normal) {
-  const float side = dot(position - light.a, light.normal);
-  const float reach = length(position - light.a);
-  // In the light's plane, or in ours, rounding would decide between nothing and a half space.
-  constexpr float kPlaneTolerance = 1e-6f;
-  if (std::abs(side) <= kPlaneTolerance * reach || (side < 0 && !light.two_sided)) return 0;
-  const float highest = std::max({dot(light.a - position, normal), dot(light.b - position, normal),
-                                  dot(light.c - position, normal)});
-  if (highest <= 10 * kPlaneTolerance * reach) return 0;
-  const std::array<Vec3, 3> corners{light.a, side > 0 ? light.b : light.c,
-                                    side > 0 ? light.c : light.b};
-  return kPi * float(viewfactor::point_to_polygon(position, normal, corners));
+  return both::irradiance_per_radiance(triangle_of(light), position, normal);
 }
 
-/// One point of a triangle light: w = cos (solid angle density) or cos cos / d^2 (area density);
-/// both up to a constant of the light, `measure`, which a group needs and an exact source does not.
-struct LightPoint {
-  Vec3 target;
-  Barycentric at;
-  float weight = 0, measure = 0;
-};
-
-LightPoint sample_solid_angle(const TriangleLight& light, const SphericalTriangle& spherical,
-                              const Receiver& r, Vec2 u) {
-  const Vec3 d = spherical_triangle_sample(spherical, u);
-  const float along = dot(d, light.normal);
-  const float t = along != 0 ? dot(light.a - r.position, light.normal) / along : 0.0f;
-  const Vec3 p = r.position + d * t;
-  const Vec3 ab = light.b - light.a, ac = light.c - light.a, ap = p - light.a;
-  const Vec3 n = cross(ab, ac);
-  const float inverse = 1 / dot(n, n);
-  return {p,
-          {dot(cross(ap, ac), n) * inverse, dot(cross(ab, ap), n) * inverse},
-          std::max(0.0f, dot(d, r.normal)),
-          spherical.solid_angle};
-}
-
-LightPoint sample_area(const TriangleLight& light, const Receiver& r, Vec2 u) {
-  const Barycentric at = triangle_sample(u);
-  const Vec3 p = interpolate(light.a, light.b, light.c, at);
-  const Vec3 d = p - r.position;
-  const float d2 = dot(d, d);
-  float light_side = -dot(d, light.normal);
-  if (light.two_sided) light_side = std::abs(light_side);
-  if (d2 <= 0 || light_side <= 0) return {p, at, 0, light.area_m2};
-  return {p, at, std::max(0.0f, dot(d, r.normal)) * light_side / (d2 * d2), light.area_m2};
-}
+using both::LightPoint;
 
 void aim_at_point(const DirectScene& lit, const TriangleLight& light, const LightPoint& point,
                   uint32_t source, float factor, const Receiver& r, ShadowRayBatch& batch) {
@@ -75,8 +28,8 @@ void aim_at_point(const DirectScene& lit, const TriangleLight& light, const Ligh
   constexpr float kEnd = 1 - 1e-4f;
   const Vec3 end =
       trace::offset_origin(point.target, front ? light.normal : -light.normal, lit.diagonal_m);
-  const Rgb radiance =
-      light.textured ? radiance_at(lit.scene, light, point.at) : light.mean_radiance;
+  const Rgb radiance = light.textured ? radiance_at(lit.scene, light, {point.at.x, point.at.y})
+                                      : light.mean_radiance;
   const float w = point.weight * factor;
   add_shadow_ray(batch, r, {source, w, radiance * w}, end - r.origin, kEnd);
 }
@@ -85,15 +38,14 @@ void aim_at_point(const DirectScene& lit, const TriangleLight& light, const Ligh
 /// the ratio: the sequence is followed until `count` points lie above it.
 void aim_at_triangle(const DirectScene& lit, const TriangleLight& light, uint32_t source,
                      uint32_t count, const Receiver& r, ShadowRayBatch& batch) {
+  const both::LightTriangle triangle = triangle_of(light);
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
-  const bool by_angle = spherical.solid_angle > kMinSolidAngle;
   uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
   if (light.piece > 0) seed = hash64(seed, light.piece);
   uint32_t kept = 0;
   for (uint32_t k = 0; kept < count && k < 8 * count + 64; ++k) {
-    const Vec2 u = sobol_owen_2d(k, seed);
     const LightPoint point =
-        by_angle ? sample_solid_angle(light, spherical, r, u) : sample_area(light, r, u);
+        both::point_of_light(triangle, spherical, r.position, r.normal, sobol_owen_2d(k, seed));
     if (point.weight <= 0) continue;
     aim_at_point(lit, light, point, source, 1, r, batch);
     ++kept;
@@ -113,10 +65,8 @@ void aim_at_drawn(const DirectScene& lit, const LightDraw& draw, const Receiver&
       {.scale = 1 / draw.chance, .drawn = true, .light = {LightId::Kind::triangle, draw.light}});
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
-  const Vec2 u = RandomStream{seed}.next2();
-  const LightPoint point = spherical.solid_angle > kMinSolidAngle
-                               ? sample_solid_angle(light, spherical, r, u)
-                               : sample_area(light, r, u);
+  const LightPoint point = both::point_of_light(triangle_of(light), spherical, r.position, r.normal,
+                                                RandomStream{seed}.next2());
   if (point.weight > 0 && shines_on(light, r))
     aim_at_point(lit, light, point, source, point.measure, r, batch);
 }
@@ -197,7 +147,7 @@ void aim_at_all_triangles(const DirectScene& lit, int samples, const Receiver& r
 void aim_at_triangles(const DirectScene& lit, int samples, const Receiver& r,
                       ShadowRayBatch& batch) {
   if (lit.lights.triangles.empty()) return;
-  if (lit.lights.triangles.size() <= kMaxAll)
+  if (lit.lights.triangles.size() <= kMaxAllTriangles)
     aim_at_all_triangles(lit, samples, r, batch);
   else
     aim_at_drawn_triangles(lit, samples, r, batch);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "luxel/base/warp.h"
+#include "luxel/light/both_light_group.h"
 #include "luxel/light/spherical_triangle.h"
 
 namespace luxel::light {
@@ -61,14 +61,6 @@ void build_node(std::span<LightLeaf> leaves, uint32_t first, std::vector<LightNo
   nodes[self] = node;
 }
 
-/// Whether a point lies where no light of the node can leave to. All cones with their apex in the
-/// sphere lie in the cone of the same angle whose apex lies radius / sin(angle) behind the centre.
-bool outside_cone(const LightNode& node, Vec3 from_centre) {
-  if (node.sin_angle <= 0) return false;
-  const Vec3 from_apex = from_centre + node.axis * (node.radius_m / node.sin_angle);
-  return dot(from_apex, node.axis) < node.cos_angle * length(from_apex);
-}
-
 }  // namespace
 
 void set_cone(LightNode& node, Vec3 axis, float angle_rad) {
@@ -86,21 +78,10 @@ std::vector<LightNode> build_light_tree(std::vector<LightLeaf>& leaves) {
   return nodes;
 }
 
-/// power * cos * (even + cos') / d^2, with each cosine taken a tenth of a radius to the bright side
-/// and never below a twentieth, and the distance never below half the radius: what keeps rays for
-/// lights on the far side of the centre. More than a tenth is noise where lights lie around the
-/// place at all distances: in a sphere, twice as much with a quarter.
 float importance_at(const LightNode& node, Vec3 position, Vec3 normal) {
-  constexpr float kLeast = 0.05f, kToBrightSide = 0.1f;
-  const Vec3 to = node.centre - position;
-  const float r = node.radius_m, height = dot(to, normal), d2 = dot(to, to);
-  if (height < -r) return 0;
-  const float d = std::sqrt(d2);
-  if (d - r > node.reach_m || outside_cone(node, -to)) return 0;
-  const float inverse = 1 / std::max({d, 0.5f * r, 1e-18f});
-  const float cosine = std::clamp((height + kToBrightSide * r) * inverse, kLeast, 1.0f);
-  const float facing = std::max(kLeast, (kToBrightSide * r - dot(to, node.facing)) * inverse);
-  return node.power * cosine * (node.even + std::min(1.0f, facing)) * inverse * inverse;
+  return both::importance_of({node.centre, node.radius_m, node.power, node.facing, node.even,
+                              node.axis, node.cos_angle, node.sin_angle, node.reach_m},
+                             position, normal);
 }
 
 }  // namespace luxel::light

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "luxel/base/check.h"
+#include "luxel/light/both_punctual_light.h"
 #include "luxel/light/punctual_tree.h"
 #include "luxel/light/textured_lights.h"
 #include "luxel/scene/light_kinds.h"
@@ -94,17 +95,10 @@ PunctualIncidence incidence_from_point(const scene::PunctualLight& light,
   const float distance = length(to_light);
   if (distance <= 0) return {};
   const Vec3 towards = to_light / distance;
-  float factor = 1 / (distance * distance);
-  if (light.range_m > 0) {
-    const float q = distance / light.range_m;
-    factor *= std::clamp(1 - q * q * q * q, 0.0f, 1.0f);
-  }
-  if (scene::has_cone(light.kind)) {
-    const float c = -dot(towards, light.direction);
-    const float outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
-    const float t = std::clamp((c - outer) / std::max(1e-3f, inner - outer), 0.0f, 1.0f);
-    factor *= t * t;
-  }
+  float factor = both::share_at_distance(distance, light.range_m);
+  if (scene::has_cone(light.kind))
+    factor *= both::share_in_cone(-dot(towards, light.direction), std::cos(light.inner_cone_rad),
+                                  std::cos(light.outer_cone_rad));
   if (light.profile != scene::kNone) {
     LUXEL_CHECK(light.profile < profiles.size());
     factor *= scene::candela_at(profiles[light.profile], light.direction, light.side, -towards);

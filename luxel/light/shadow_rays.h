@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/base/random.h"
 #include "luxel/light/direct_light.h"
 #include "luxel/light/light_draw.h"
 #include "luxel/light/light_layers.h"
@@ -13,6 +14,11 @@
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::light {
+
+/// Up to so many triangles every one is looked at; of more, some are drawn.
+inline constexpr size_t kMaxAllTriangles = 32;
+/// Up to so many punctual lights each one gets its shadow ray; of more, so many are drawn.
+inline constexpr size_t kMaxAllPunctual = 64;
 
 /// What shadow rays are traced through and towards.
 struct DirectScene {
@@ -27,6 +33,11 @@ struct Receiver {
   Vec3 origin;  ///< position moved off the surface: where shadow rays start
   uint64_t seed = 0;
 };
+
+/// The seed of an element's shadow rays.
+inline uint64_t seed_of_element(const DirectParams& params, size_t element) {
+  return hash64(params.seed, params.same_points ? 0 : element);
+}
 
 /// A shadow ray and what its source would bring.
 struct ShadowRay {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "luxel/base/check.h"
-#include "luxel/base/circle.h"
 #include "luxel/base/vec_double.h"
+#include "luxel/light/both_bright_texel.h"
 #include "luxel/scene/environment.h"
 
 namespace luxel::light {
@@ -136,23 +136,12 @@ BrightTexelSample sample_bright_texels(const scene::Scene& scene, const Surround
   // Uniform over the pixel's solid angle: linear in the cosine of the angle from up.
   const double upper = s.row_cosine[size_t(y)], lower = s.row_cosine[size_t(y) + 1];
   const double up = upper + (lower - upper) * double(u.y);
-  const double sine = std::sqrt(std::max(0.0, (1 - up) * (1 + up)));
-  const float turns =
-      (float(x) + float(within)) / float(map.width) - 0.5f + map.rotation_rad * (1 / (2 * kPi));
-  const float wrapped = turns - std::floor(turns);
-  const Vec2 around = unit_circle(wrapped < 1 ? wrapped : 0.0f);
-  const Vec3 direction{float(sine) * around.x, float(up), float(sine) * around.y};
+  const Vec3 direction =
+      both::direction_in_column(map.width, map.rotation_rad, x, float(within), up);
   const Rgb l = map.radiance[pixel];
   const float l_luminance = luminance(l);
   // Density = (lum L - limit) / power per steradian, radiance = L (lum L - limit) / lum L.
   return {direction, l * float(power / double(l_luminance))};
-}
-
-float folded_cosine(Vec3 d, Vec3 normal, Vec3 geometric_normal) {
-  const float cosine = std::max(0.0f, dot(d, normal));
-  if (normal == geometric_normal) return cosine;
-  const Vec3 mirrored = d - geometric_normal * (2 * dot(d, geometric_normal));
-  return cosine + std::max(0.0f, dot(mirrored, normal));
 }
 
 }  // namespace luxel::light

@@ -52,12 +52,7 @@ struct BrightTexelSample {
 /// u in [0, 1)^2, of a sequence that spreads evenly.
 BrightTexelSample sample_bright_texels(const scene::Scene& scene, const Surroundings& s, Vec2 u);
 
-/// The cosine with which light from `direction` counts at a point whose shading normal differs from
-/// that of its triangle: directions below the triangle look at their mirror image above it, so that
-/// they see light, not the inside of the solid. Its integral over the hemisphere is pi.
-float folded_cosine(Vec3 direction, Vec3 normal, Vec3 geometric_normal);
-
-/// That mirror image: the direction itself where it points away from the triangle.
+using both::folded_cosine;
 using both::mirrored_above;
 
 }  // namespace luxel::light

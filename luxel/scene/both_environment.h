@@ -4,9 +4,6 @@
 #define LUXEL_SCENE_BOTH_ENVIRONMENT_H
 #include "luxel/base/both_angle.h"
 BOTH_BEGIN
-#ifndef VULKAN
-using std::floor;
-#endif
 
 // The place of a unit direction, in [0, 1) x [0, 1]. By angle_of(), because the arc cosine loses
 // half of the digits near the poles.

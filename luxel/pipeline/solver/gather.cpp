@@ -14,6 +14,7 @@
 #include "luxel/pipeline/solver/gather_plan.h"
 #include "luxel/pipeline/solver/light_part.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/on_device.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/solver/texel_light.h"
@@ -168,12 +169,6 @@ KeptBake kept_bake(const light::TexelScene& in, const light::LightLayers& layers
 /// Drops layers that nobody has asked for.
 void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.layer_irradiance); }
 
-/// Whether the processor may do what a device has failed at.
-bool is_of_device(const Error& error) {
-  return error.code == ErrorCode::unsupported || error.code == ErrorCode::no_device ||
-         error.code == ErrorCode::out_of_memory;
-}
-
 /// What gather() is called with.
 struct GatherCall {
   const light::TexelScene& in;
@@ -207,10 +202,9 @@ Result<gather::Gather> run_on_any(const BakeDevice* on, GatherCall call, std::st
   const auto start = Clock::now();
   auto out = run_on(*on, call, progress);
   if (out) device = on->name;
-  if (out || !on->is_optional || !is_of_device(out.error())) return out;
+  if (out || !may_go_on_without(*on, out.error())) return out;
   on->rays->forget();
-  warnings.push_back(
-      fmt::format("baked on the processor, not on {}: {}", on->name, out.error().message));
+  warnings.push_back(warning_without(*on, out.error()));
   if (call.params.seconds > 0)
     call.params.seconds = std::max(call.params.seconds - seconds_since(start), 1e-3);
   return run(call, progress);

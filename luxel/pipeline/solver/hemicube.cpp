@@ -9,6 +9,7 @@
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/measured_error.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/on_device.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/solver/vertex_lit.h"
@@ -58,8 +59,28 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
   return out;
 }
 
+/// hemicube::solve() on the device, if there is one; where that is optional and fails, on the
+/// processor, with a warning. `device` gets the name of that which has looked. Errors: those of
+/// hemicube::solve().
+Result<hemicube::Solution> solve_on_any(const light::TexelScene& in, const BakeDevice* on,
+                                        hemicube::HemicubeParams params,
+                                        const hemicube::Observer& observer, std::string& device,
+                                        std::vector<std::string>& warnings, Progress& progress) {
+  const auto run = [&] {
+    return hemicube::solve(in.scene, in.lights, in.tracer, params, progress, observer);
+  };
+  if (!on) return run();
+  params.device = on->look;
+  auto out = run();
+  if (out) device = on->name;
+  if (out || !may_go_on_without(*on, out.error())) return out;
+  warnings.push_back(warning_without(*on, out.error()));
+  params.device = nullptr;
+  return run();
+}
+
 Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSettings& settings,
-                                  const SolveStores&, const SolveObserver& observer,
+                                  const SolveStores& stores, const SolveObserver& observer,
                                   Progress& progress) {
   hemicube::HemicubeParams params = hemicube_params(settings);
   const uint64_t pixels = hemicube::bytes_of_hemicube(params.resolution, thread_count());
@@ -67,12 +88,16 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
             memory_to_spare(in, settings, bytes_of_light(in, settings), pixels + kMinHitBytes));
   params.row_memory_bytes = memory - pixels;
   params.scratch_folder = nearest_folder(settings.output);
+  std::string device;
+  std::vector<std::string> warnings;
   LUXEL_TRY(const hemicube::Solution solution,
-            hemicube::solve(in.scene, in.lights, in.tracer, params, progress,
-                            observer.hemicube ? *observer.hemicube : hemicube::Observer{}));
+            solve_on_any(in, stores.device, params,
+                         observer.hemicube ? *observer.hemicube : hemicube::Observer{}, device,
+                         warnings, progress));
   const float cover_size_m =
       transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
   TexelLight out = texel_light_of(in, solution, cover_size_m);
+  out.device = std::move(device), out.warnings = std::move(warnings);
   LUXEL_TRY(out.relative_error,
             measured_error(in, out,
                            {settings.bounces, settings.seed,
@@ -159,7 +184,7 @@ Status check_contradictions(const hemicube::HemicubeParams& params) {
 
 Solver hemicube_solver() {
   return {.name = "hemicube",
-          .can = {.direct_samples = true, .vertex_light = true},
+          .can = {.direct_samples = true, .device = true, .vertex_light = true},
           .solve = solve_hemicube,
           .options = options_of_solver("hemicube", kHemicubeHeading, hemicube_options()),
           .notes = {{"--direct-samples", "four times as many per element"}},

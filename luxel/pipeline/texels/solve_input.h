@@ -18,15 +18,19 @@
 namespace luxel::gather {
 class RayDevice;
 }
+namespace luxel::hemicube {
+class LookDevice;
+}
 
 namespace luxel::pipeline {
 
 class BakeCache;
 
-/// A graphics device for rays.
+/// A graphics device for what solvers leave to one.
 struct BakeDevice {
-  gather::RayDevice* rays = nullptr;  ///< not null
-  std::string name;                   ///< what bake.json calls it
+  gather::RayDevice* rays = nullptr;     ///< for gather; not null
+  hemicube::LookDevice* look = nullptr;  ///< for hemicube; not null
+  std::string name;                      ///< what bake.json calls it
   /// Where the device cannot have the bake, or fails, the processor has it, with a warning.
   bool is_optional = false;
 };

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "luxel/base/check.h"
+#include "luxel/light/device/direct_light_on_device.h"
 #include "luxel/solve/device/device_sweep.h"
 #include "luxel/solve/device/landed_rays.h"
 #include "luxel/solve/gather/bounce/sweep.h"
@@ -14,23 +15,38 @@ class GatherDevice final : public gather::RayDevice {
  public:
   explicit GatherDevice(const gpu::Device& device) : device_(&device) {}
 
-  Status accepts(const gather::TraceScene& in) const override {
+  Status begin(const gather::TraceScene& in) override {
+    forget();
     if (in.tracer.has_tints())
       return fail(ErrorCode::unsupported,
                   "rays on the device know no coloured glass, which the scene has: bake it on the "
                   "processor");
+    LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device_));
+    commands_.emplace(std::move(commands));
+    LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(*device_, in.scene));
+    tracer_.emplace(std::move(tracer));
     return {};
+  }
+
+  bool knows_lights(const gather::TraceScene& in) const override {
+    return device_->has_doubles && light::device_knows(in.lights);
+  }
+
+  Result<light::DirectLight> direct_light(const gather::TraceScene& in,
+                                          const light::DirectParams& params,
+                                          Progress& progress) override {
+    LUXEL_CHECK(tracer_);
+    LUXEL_TRY(light::DeviceDirectLight direct,
+              light::DeviceDirectLight::make(*tracer_, *commands_, in.scene, in.lights));
+    return direct.direct_light(in.elements, params, progress);
   }
 
   Status trace(const gather::TraceScene& in, int samples, const gather::TraceParams& params,
                gather::TracedHits& hits, Progress& progress) override {
-    forget();
-    LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device_));
-    commands_.emplace(std::move(commands));
-    LUXEL_TRY(const trace::DeviceRayTracer tracer,
-              trace::DeviceRayTracer::build(*device_, in.scene));
+    LUXEL_CHECK(tracer_);
+    rays_.reset();
     LandedSeconds seconds;
-    LUXEL_TRY(LandedRays rays, land_rays({tracer, *commands_, in}, {.samples = samples}, params,
+    LUXEL_TRY(LandedRays rays, land_rays({*tracer_, *commands_, in}, {.samples = samples}, params,
                                          hits, seconds, progress));
     rays_.emplace(std::move(rays));
     gathered_.resize(in.elements.size());
@@ -49,12 +65,13 @@ class GatherDevice final : public gather::RayDevice {
     return {};
   }
 
-  void forget() override { rays_.reset(), gathered_.clear(); }
+  void forget() override { rays_.reset(), tracer_.reset(), gathered_.clear(); }
 
  private:
   const gpu::Device* device_;
   std::optional<gpu::Commands> commands_;
-  std::optional<LandedRays> rays_;  ///< of the last trace(); goes before commands_
+  std::optional<trace::DeviceRayTracer> tracer_;  ///< of the last begin()
+  std::optional<LandedRays> rays_;                ///< of the last trace(); goes before commands_
   std::vector<DeviceGathered> gathered_;
 };
 

@@ -17,7 +17,16 @@ class Counting final : public gather::RayDevice {
  public:
   explicit Counting(const gpu::Device& device) : inner_(gather_device(device)) {}
 
-  Status accepts(const gather::TraceScene& in) const override { return inner_->accepts(in); }
+  Status begin(const gather::TraceScene& in) override { return inner_->begin(in); }
+  bool knows_lights(const gather::TraceScene& in) const override {
+    return inner_->knows_lights(in);
+  }
+  Result<light::DirectLight> direct_light(const gather::TraceScene& in,
+                                          const light::DirectParams& params,
+                                          Progress& progress) override {
+    ++lit;
+    return inner_->direct_light(in, params, progress);
+  }
   Status trace(const gather::TraceScene& in, int samples, const gather::TraceParams& params,
                gather::TracedHits& hits, Progress& progress) override {
     ++traced;
@@ -32,7 +41,7 @@ class Counting final : public gather::RayDevice {
     inner_->forget();
   }
 
-  int traced = 0, swept = 0, forgotten = 0;
+  int lit = 0, traced = 0, swept = 0, forgotten = 0;
 
  private:
   std::unique_ptr<gather::RayDevice> inner_;
@@ -44,6 +53,7 @@ class BakesOnDevice : public gpu::testing::OnDevice {
   gather::Gather solve(const gather::Room& room, const gather::GatherParams& params) {
     Counting rays(*device_);
     gather::Gather out = gather::solve(room, params, {.device = &rays});
+    EXPECT_EQ(rays.lit, 1);
     EXPECT_EQ(rays.traced, 1);
     EXPECT_GE(rays.swept, out.sweeps);
     EXPECT_EQ(rays.forgotten, 1);

@@ -6,6 +6,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
 #include "luxel/gpu/pieces.h"
+#include "luxel/solve/device/device_surroundings.h"
 #include "luxel/solve/device/landings.h"
 #include "luxel/solve/device/open_list.h"
 #include "luxel/solve/device/shaders/escaped_light.comp.h"
@@ -40,16 +41,6 @@ struct LandPush {
   uint32_t first_tile, first_group = 0;
 };
 
-struct DeviceSurroundings {
-  Rgb background;
-  float limit;
-  int32_t width, height;
-  float rotation_rad;
-  uint32_t unused = 0;
-  VkDeviceAddress pixels;
-};
-static_assert(sizeof(DeviceSurroundings) == 40);
-
 struct LightPush {
   VkDeviceAddress around, elements, plain, hits, light;
   uint32_t seed_low, seed_high;
@@ -71,7 +62,7 @@ struct Round {
   gpu::Pipeline land{};
   gpu::PieceSize land_piece{kTogether}, escaped_piece{kTogether};
   // Only where light comes from around.
-  gpu::Buffer around{}, pixels{};
+  DeviceSurroundings around{};
   gpu::Buffer light{};  ///< gather::EscapedLight of a chunk's elements
   gpu::Pipeline escaped{};
 
@@ -107,19 +98,10 @@ bool shines(const scene::Scene& scene, const light::Surroundings& around) {
 }
 
 Status prepare_surroundings(Round& round) {
-  const scene::Environment& map = round.scene.in.scene.environment;
+  const scene::Scene& scene = round.scene.in.scene;
   const light::Surroundings& around = round.scene.in.lights.around;
-  if (!shines(round.scene.in.scene, around)) return {};
-  gpu::Commands& commands = round.scene.commands;
-  constexpr std::string_view kWhat = "the buffer of the surroundings";
-  LUXEL_TRY(round.pixels, uploaded(commands, std::span<const Rgb>(map.radiance), kWhat));
-  const DeviceSurroundings values{.background = around.background,
-                                  .limit = around.limit,
-                                  .width = map.empty() ? 0 : map.width,
-                                  .height = map.empty() ? 0 : map.height,
-                                  .rotation_rad = map.rotation_rad,
-                                  .pixels = round.pixels.address};
-  LUXEL_TRY(round.around, uploaded(commands, std::span(&values, 1), kWhat));
+  if (!shines(scene, around)) return {};
+  LUXEL_TRY(round.around, upload_surroundings(round.scene.commands, scene.environment, around));
   LUXEL_TRY(round.light, gpu::make_buffer(round.device(),
                                           round.elements_of_chunk() * sizeof(gather::EscapedLight),
                                           gpu::Access::device, "the buffer of the sky's light"));
@@ -209,7 +191,7 @@ Result<std::vector<DeviceOpenRay>> land_chunk(const LandedChunk& chunk, Round& r
 /// Adds up what a chunk's escaped rays see. Returns the seconds.
 Result<double> light_of_escaped(const LandedChunk& chunk, Round& round) {
   if (round.is_dark_around()) return 0.0;
-  const LightPush push{.around = round.around.address,
+  const LightPush push{.around = round.around.values.address,
                        .elements = round.from.elements.address,
                        .plain = round.from.samples.address,
                        .hits = chunk.hits.address,

@@ -186,7 +186,7 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
   if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
-  if (stores.device) LUXEL_TRY_STATUS(stores.device->accepts(trace_scene(scene, &sides)));
+  if (stores.device) LUXEL_TRY_STATUS(stores.device->begin(trace_scene(scene, &sides)));
   // 1. Light straight from the lights, with shadow rays.
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));
   // 2. The rays that every element gets, and what they hit.

@@ -5,6 +5,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/solve/hemicube/exchange.h"
+#include "luxel/solve/hemicube/look_device.h"
 #include "luxel/solve/hemicube/refine.h"
 
 namespace luxel::hemicube {
@@ -149,6 +150,7 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
   LUXEL_CHECK(params.resolution >= 2 && params.resolution <= kMaxResolution &&
               params.resolution % 2 == 0);
   LUXEL_TRY(FirstMesh first, first_mesh(scene, params, progress));
+  if (params.device) LUXEL_TRY_STATUS(params.device->begin(scene));
   const Emission emission = choose_emission(lights);
   Solution s;
   // The leg of a right isosceles triangle of mean area.

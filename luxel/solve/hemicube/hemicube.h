@@ -27,6 +27,7 @@ struct HemicubeParams {
   bool smooth = false;  ///< triangle: interpolate between their middles, too
   uint64_t row_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
+  LookDevice* device = nullptr;  ///< what looks through hemicubes; null: the processor
 };
 
 inline constexpr int kMaxResolution = 2048;

@@ -8,6 +8,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/hemicube/item_buffer.h"
+#include "luxel/solve/hemicube/look_device.h"
 #include "luxel/viewfactor/hemicube.h"
 
 namespace luxel::hemicube {
@@ -15,31 +16,6 @@ namespace {
 
 /// Rays between two looks at the clock and at Progress.
 constexpr size_t kBatch = 16384;
-
-struct Pixel {
-  Vec3 direction;
-  float factor = 0;
-};
-
-/// All pixels, in tiles of 4 x 4 of a face: a packet of rays that stay together.
-Result<std::vector<Pixel>> pixels_in_tiles(int resolution, Progress& progress) {
-  LUXEL_TRY(const viewfactor::Hemicube cube, viewfactor::make_hemicube(resolution, progress));
-  std::vector<Pixel> pixels;
-  pixels.reserve(cube.direction.size());
-  size_t first = 0;
-  for (int face = 0; face < 5; ++face) {
-    const int rows = face == 0 ? resolution : resolution / 2;
-    for (int y = 0; y < rows; y += 4)
-      for (int x = 0; x < resolution; x += 4)
-        for (int j = y; j < std::min(y + 4, rows); ++j)
-          for (int i = x; i < std::min(x + 4, resolution); ++i) {
-            const size_t k = first + size_t(j) * size_t(resolution) + size_t(i);
-            pixels.push_back({cube.direction[k], float(cube.delta_factor[k])});
-          }
-    first += size_t(rows) * size_t(resolution);
-  }
-  return pixels;
-}
 
 /// Sums shares per element; remembers which elements have one.
 class Shares {
@@ -173,11 +149,29 @@ class Looker {
 
 }  // namespace
 
+Result<std::vector<Pixel>> pixels_in_tiles(int resolution, Progress& progress) {
+  LUXEL_TRY(const viewfactor::Hemicube cube, viewfactor::make_hemicube(resolution, progress));
+  std::vector<Pixel> pixels;
+  pixels.reserve(cube.direction.size());
+  size_t first = 0;
+  for (int face = 0; face < 5; ++face) {
+    const int rows = face == 0 ? resolution : resolution / 2;
+    for (int y = 0; y < rows; y += 4)
+      for (int x = 0; x < resolution; x += 4)
+        for (int j = y; j < std::min(y + 4, rows); ++j)
+          for (int i = x; i < std::min(x + 4, resolution); ++i) {
+            const size_t k = first + size_t(j) * size_t(resolution) + size_t(i);
+            pixels.push_back({cube.direction[k], float(cube.delta_factor[k])});
+          }
+    first += size_t(rows) * size_t(resolution);
+  }
+  return pixels;
+}
+
 Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
-                         const LookParams& params,
-                         const std::function<Status(size_t, const View&)>& done,
-                         Progress& progress) {
+                         const LookParams& params, const OnView& done, Progress& progress) {
   LUXEL_CHECK(params.resolution >= 2 && params.resolution % 2 == 0);
+  if (params.device) return params.device->look(senders, from, params, done, progress);
   // One set of pixels serves all viewpoints.
   LUXEL_TRY(std::vector<Pixel> pixels, pixels_in_tiles(params.resolution, progress));
   const Looker looker(senders, std::move(pixels));

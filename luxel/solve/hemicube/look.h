@@ -59,19 +59,31 @@ inline uint64_t pixels_of(int resolution) {
   return 3 * uint64_t(resolution) * uint64_t(resolution);
 }
 
+class LookDevice;
+
 struct LookParams {
-  int resolution = 64;  ///< pixels along an edge of the hemicube's top, even
+  int resolution = 64;           ///< pixels along an edge of the hemicube's top, even
+  LookDevice* device = nullptr;  ///< what looks; null: the processor
 };
+
+struct Pixel {
+  Vec3 direction;    ///< unit, about +z
+  float factor = 0;  ///< F(point -> pixel)
+};
+/// All pixels of a hemicube, in tiles of 4 x 4 of a face: a packet of rays that stay together.
+/// Errors: cancelled.
+Result<std::vector<Pixel>> pixels_in_tiles(int resolution, Progress& progress);
+
+/// Gets the number of a viewpoint, and what is seen from it, valid during the call.
+using OnView = std::function<Status(size_t, const View&)>;
 
 /// Viewpoints are looked from in groups of so many neighbours, in order, by one thread each.
 inline constexpr size_t kTileElements = 16;
 
 /// Calls done(i, view) for every viewpoint, from many threads; the view is only valid during the
-/// call. The stage "hemicubes". Errors: cancelled, or what done returns.
+/// call. The stage "hemicubes". Errors: cancelled, what done returns; those of params.device.
 Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
-                         const LookParams& params,
-                         const std::function<Status(size_t, const View&)>& done,
-                         Progress& progress);
+                         const LookParams& params, const OnView& done, Progress& progress);
 
 /// One viewpoint per element, in their order.
 std::vector<Viewpoint> viewpoints(const transport::Elements& elements);

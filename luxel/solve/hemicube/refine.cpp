@@ -181,7 +181,7 @@ Result<Sight> look_from(const SendingScene& around, const transport::Elements& e
                         around.senders,
                         around.emission.exact.around,
                         around.emission.by_pixels};
-  RowParams of_rows{.look = {.resolution = params.resolution},
+  RowParams of_rows{.look = {.resolution = params.resolution, .device = params.device},
                     .memory_limit_bytes = params.row_memory_bytes,
                     .scratch_folder = params.scratch_folder};
   if (around.observer && around.observer->on_direct) around.observer->on_direct(direct.irradiance);

@@ -3,9 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/see_through.glsl"
-#include "luxel/scene/both_environment.h"
 #include "element_rays.glsl"
 #include "stored_hits.glsl"
+#include "surroundings.glsl"
 layout(local_size_x = 64) in;
 
 // gather::EscapedLight
@@ -14,18 +14,6 @@ struct EscapedLight {
   float luminance2, second_luminance;
 };
 layout(buffer_reference, scalar) writeonly buffer AllLight { EscapedLight at[]; };
-layout(buffer_reference, scalar) readonly buffer Pixels { vec3 at[]; };
-
-// light::Surroundings
-layout(buffer_reference, scalar) readonly buffer Surroundings {
-  vec3 background;
-  float limit;  // of a pixel's luminance: what is above is aimed at
-  int width, height;  // 0: no map
-  float rotation_rad;
-  uint unused;
-  Pixels pixels;
-};
-
 layout(push_constant, scalar) uniform Push {
   Surroundings around;
   Elements elements;
@@ -37,17 +25,6 @@ layout(push_constant, scalar) uniform Push {
   uint first_tile;  // of the chunk
   uint first_group;
 };
-
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
-
-// light::soft_radiance()
-vec3 soft_radiance(vec3 direction) {
-  if (around.width == 0) return around.background;
-  vec3 l = around.pixels.at[pixel_of_environment(
-      around.width, around.height, place_in_environment(around.rotation_rad, direction))];
-  float over = luminance(l);
-  return around.background + l * (over > around.limit ? around.limit / over : 1.0);
-}
 
 void main() {
   uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
@@ -63,7 +40,7 @@ void main() {
     for (uint k = plain.first_of[p]; k < plain.first_of[p + 1]; ++k, ++place) {
       if (hits.at[(tile * samples + place) * 64 + lane] != uvec2(kEscaped, 0)) continue;
       uint sample_number = plain.sample_of[k];
-      vec3 radiance = soft_radiance(ray_direction(e, sample_number, own_seed));
+      vec3 radiance = soft_radiance(around, ray_direction(e, sample_number, own_seed));
       float l = luminance(radiance);
       sum.sum += radiance, sum.luminance2 += l * l;
       if (2 * sample_number >= samples) sum.second_luminance += l;

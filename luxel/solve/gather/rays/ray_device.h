@@ -7,6 +7,11 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 
+namespace luxel::light {
+struct DirectLight;
+struct DirectParams;
+}  // namespace luxel::light
+
 namespace luxel::gather {
 
 struct Gathered;
@@ -15,17 +20,27 @@ struct TraceParams;
 struct TracedHits;
 struct TraceScene;
 
-/// Traces the first round of rays and keeps where they land. One solution at a time uses it. It
-/// keeps no parts, and shows nobody how the round grows.
+/// Works the first direct light out, traces the first round of rays, and keeps where they land. One
+/// solution at a time uses it. It keeps no parts, and shows nobody how the round grows.
 class RayDevice {
  public:
   virtual ~RayDevice() = default;
 
-  /// Whether the device can trace the scene; else a sentence (ErrorCode::unsupported).
-  virtual Status accepts(const TraceScene& in) const = 0;
+  /// Takes a scene, in place of any before; what follows is about this one. Errors: it cannot trace
+  /// it (ErrorCode::unsupported), no memory, the device is lost.
+  virtual Status begin(const TraceScene& in) = 0;
+
+  /// Whether it knows all that shines in the scene; else direct light is the processor's.
+  virtual bool knows_lights(const TraceScene& in) const = 0;
+
+  /// light::direct_light(), where it knows the lights. In params neither parts, layers nor
+  /// sky_samples. Errors: cancelled, no memory, the device is lost.
+  virtual Result<light::DirectLight> direct_light(const TraceScene& in,
+                                                  const light::DirectParams& params,
+                                                  Progress& progress) = 0;
 
   /// trace_hits(), but that the hits stay on the device until forget(), and sweep() has what they
-  /// bring. A scene that it accepts, some elements; 1 to 65535 samples; `hits` as no_hits() gives
+  /// bring. Some elements; 1 to 65535 samples; `hits` as no_hits() gives
   /// them. In params neither parts, keep, earlier nor layers. Errors: ErrorCode::unsupported for
   /// too many rays, cancelled, no memory, the device is lost.
   virtual Status trace(const TraceScene& in, int samples, const TraceParams& params,
@@ -35,7 +50,7 @@ class RayDevice {
   /// Errors: no memory, the device is lost.
   virtual Status sweep(const RadiosityMap& map, std::span<Gathered> out) = 0;
 
-  /// Gives the memory of trace() back.
+  /// Gives the memory of the scene and of trace() back.
   virtual void forget() = 0;
 };
 

@@ -1,0 +1,171 @@
+#include "luxel/light/device/direct_light_on_device.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/light/device/shaders/direct_light_binary.comp.h"
+#include "luxel/light/device/shaders/direct_light_wide.comp.h"
+#include "luxel/light/shadow_rays.h"
+
+namespace luxel::light {
+namespace {
+
+constexpr size_t kGroup = 64;  // as the shaders have it
+/// Elements that are sent at a time: 11 MB, and often enough to be asked whether to stop.
+constexpr size_t kElementsAtATime = size_t(1) << 18;
+
+// Structs of shaders/shadow_rays.glsl.
+
+struct DeviceReceiver {
+  Vec3 position, normal, geometric_normal;
+  uint32_t seed_low, seed_high;
+};
+static_assert(sizeof(DeviceReceiver) == 44);
+
+struct DeviceLightAt {
+  Rgb irradiance;
+  float variance, split_variance;
+  uint32_t rays;
+};
+static_assert(sizeof(DeviceLightAt) == 24);
+
+struct DirectPush {
+  VkDeviceAddress setup, receivers, light;
+  uint32_t count, samples;
+  uint32_t first_group = 0;
+  uint32_t unused = 0;
+};
+
+/// The kinds of sources, each of which a device takes in a step of its own.
+enum class DirectStep : uint8_t {
+  all_triangles,
+  drawn_triangles,
+  punctual_lights,
+  drawn_punctual_lights,
+  bright_texels
+};
+
+/// What a scene's lights need.
+std::vector<DirectStep> steps_of(const Lights& lights) {
+  std::vector<DirectStep> out;
+  if (!lights.triangles.empty())
+    out.push_back(lights.triangles.size() <= kMaxAllTriangles ? DirectStep::all_triangles
+                                                              : DirectStep::drawn_triangles);
+  if (!lights.punctual.empty()) out.push_back(DirectStep::punctual_lights);
+  if (lights.punctual.size() > kMaxAllPunctual && !lights.punctual_nodes.empty())
+    out.push_back(DirectStep::drawn_punctual_lights);
+  if (!lights.around.bright_texels.empty()) out.push_back(DirectStep::bright_texels);
+  return out;
+}
+
+}  // namespace
+
+Status DeviceDirectLight::make_steps(const trace::DeviceRayTracer& tracer, const Lights& lights) {
+  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
+  const gpu::Spirv shader =
+      wide ? gpu::Spirv(direct_light_wide_comp) : gpu::Spirv(direct_light_binary_comp);
+  for (const DirectStep step : steps_of(lights)) {
+    steps_.emplace_back();
+    LUXEL_TRY(steps_.back().pipeline,
+              gpu::make_compute_pipeline(commands_->device(), shader, {sizeof(DirectPush), {}},
+                                         {uint32_t(tracer.lets_light_through()), uint32_t(step)}));
+  }
+  return {};
+}
+
+Result<DeviceDirectLight> DeviceDirectLight::make(const trace::DeviceRayTracer& tracer,
+                                                  gpu::Commands& commands,
+                                                  const scene::Scene& scene, const Lights& lights) {
+  LUXEL_CHECK(tracer.device().has_doubles);
+  DeviceDirectLight out(commands);
+  LUXEL_TRY(out.lights_, upload_lights(commands, tracer, scene, lights));
+  LUXEL_TRY_STATUS(out.make_steps(tracer, lights));
+  return out;
+}
+
+Status DeviceDirectLight::make_room(size_t count) {
+  if (room_ >= count) return {};
+  const gpu::Device& device = commands_->device();
+  constexpr std::string_view kWhat = "the buffer of elements";
+  sent_ = {}, receivers_ = {}, light_ = {}, answered_ = {}, room_ = 0;
+  const size_t in = count * sizeof(DeviceReceiver), out = count * sizeof(DeviceLightAt);
+  LUXEL_TRY(sent_, gpu::make_buffer(device, in, gpu::Access::from_host, kWhat));
+  LUXEL_TRY(receivers_, gpu::make_buffer(device, in, gpu::Access::device, kWhat));
+  LUXEL_TRY(light_, gpu::make_buffer(device, out, gpu::Access::device, kWhat));
+  LUXEL_TRY(answered_, gpu::make_buffer(device, out, gpu::Access::to_host, kWhat));
+  room_ = count;
+  return {};
+}
+
+/// Works the light of the first `count` receivers of sent_ out: it lies in answered_ then.
+Status DeviceDirectLight::light_some(size_t count, int samples) {
+  const gpu::Device& device = commands_->device();
+  LUXEL_TRY_STATUS(gpu::copy_bytes(*commands_, sent_, receivers_, count * sizeof(DeviceReceiver)));
+  LUXEL_TRY_STATUS(commands_->run([&](VkCommandBuffer c) {
+    device.vk.vkCmdFillBuffer(c, light_.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+    gpu::full_barrier(device, c);
+  }));
+  const DirectPush push{.setup = lights_.setup.address,
+                        .receivers = receivers_.address,
+                        .light = light_.address,
+                        .count = uint32_t(count),
+                        .samples = uint32_t(samples)};
+  for (Step& step : steps_) {
+    LUXEL_TRY(const double took, gpu::run_groups(*commands_, step.pipeline, push,
+                                                 (count + kGroup - 1) / kGroup, step.piece));
+    // Each step adds to what those before it have found.
+    LUXEL_TRY_STATUS(commands_->run([&](VkCommandBuffer c) { gpu::full_barrier(device, c); }));
+    seconds_ += took;
+  }
+  return gpu::copy_bytes(*commands_, light_, answered_, count * sizeof(DeviceLightAt));
+}
+
+Status DeviceDirectLight::direct_light_again(const transport::Elements& elements,
+                                             std::span<const uint32_t> which,
+                                             const DirectParams& params, DirectLight& direct,
+                                             Progress& progress) {
+  LUXEL_CHECK(params.samples >= 1 && params.sky_samples == 0 && !params.layers);
+  LUXEL_CHECK(direct.irradiance.size() == elements.size());
+  progress.begin("direct light", which.size());
+  for (size_t begin = 0; begin < which.size(); begin += kElementsAtATime) {
+    if (progress.cancelled()) break;
+    const std::span<const uint32_t> these =
+        which.subspan(begin, std::min(kElementsAtATime, which.size() - begin));
+    LUXEL_TRY_STATUS(make_room(these.size()));
+    auto* receivers = reinterpret_cast<DeviceReceiver*>(sent_.mapped);
+    parallel_for(these.size(), 4096, [&](size_t first, size_t end) {
+      for (size_t k = first; k < end; ++k) {
+        const uint32_t i = these[k];
+        const uint64_t seed = seed_of_element(params, i);
+        receivers[k] = {elements.position[i], elements.normal[i], elements.geometric_normal[i],
+                        uint32_t(seed), uint32_t(seed >> 32)};
+      }
+    });
+    LUXEL_TRY_STATUS(light_some(these.size(), params.samples));
+    const auto* light = reinterpret_cast<const DeviceLightAt*>(answered_.mapped);
+    for (size_t k = 0; k < these.size(); ++k) {
+      const uint32_t i = these[k];
+      direct.irradiance[i] = light[k].irradiance, direct.variance[i] = light[k].variance;
+      direct.split_variance[i] = light[k].split_variance, direct.rays += light[k].rays;
+    }
+    progress.advance(these.size());
+  }
+  return stopped(progress);
+}
+
+Result<DirectLight> DeviceDirectLight::direct_light(const transport::Elements& elements,
+                                                    const DirectParams& params,
+                                                    Progress& progress) {
+  DirectLight out;
+  out.irradiance.resize(elements.size());
+  out.variance.resize(elements.size()), out.split_variance.resize(elements.size());
+  std::vector<uint32_t> all(elements.size());
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY_STATUS(direct_light_again(elements, all, params, out, progress));
+  return out;
+}
+
+}  // namespace luxel::light

@@ -1,0 +1,206 @@
+// A device's direct light is that of the processor. Skipped without a device.
+#include "luxel/light/device/direct_light_on_device.h"
+
+#include <gmock/gmock.h>
+
+#include "luxel/base/random.h"
+#include "luxel/gpu/device_test_support.h"
+#include "luxel/scene/light_kinds.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/scene/surface_points.h"
+
+namespace luxel::light {
+namespace {
+
+/// Places all over the surfaces of a scene.
+transport::Elements places_of(const scene::Scene& scene, size_t count) {
+  transport::Elements out;
+  for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, count, 3)) {
+    const transport::SmoothPoint s = transport::smooth_point(scene, p);
+    out.position.push_back(s.position), out.normal.push_back(s.normal);
+    out.geometric_normal.push_back(s.geometric_normal);
+    out.reflectance.push_back({0.5f, 0.5f, 0.5f});
+  }
+  return out;
+}
+
+class DirectLightOnDevice : public gpu::testing::OnDevice {
+ protected:
+  void SetUp() override {
+    OnDevice::SetUp();
+    if (device_ && !device_->has_doubles) GTEST_SKIP() << "the device has no double precision";
+  }
+  /// The light of both is the same, and so is what they say of its noise.
+  void expect_the_same(const scene::Scene& scene, int samples, trace::HierarchyKind kind);
+};
+
+// Shadow rays that graze an edge, and draws that rounding decides otherwise, change an element by
+// the light of one of its rays: one of 1000 elements differs by about 1/20 of its light then.
+constexpr double kMostRms = 2e-3, kMostBias = 2e-4;
+
+void DirectLightOnDevice::expect_the_same(const scene::Scene& scene, int samples,
+                                          trace::HierarchyKind kind) {
+  const transport::Elements elements = places_of(scene, 4000);
+  const Lights lights = collect_lights(scene);
+  const auto on_processor = trace::RayTracer::build(scene);
+  const auto on_device = trace::DeviceRayTracer::build(*device_, scene, kind);
+  ASSERT_TRUE(on_processor && on_device);
+  const DirectParams params{.samples = samples, .seed = 5};
+  Progress progress;
+  const auto expected = direct_light(scene, elements, lights, *on_processor, params, progress);
+  ASSERT_TRUE(device_knows(lights));
+  auto direct = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
+  ASSERT_TRUE(direct) << direct.error().message;
+  const auto found = direct->direct_light(elements, params, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  double sum = 0, difference = 0, squares = 0, variance = 0, expected_variance = 0, split = 0,
+         expected_split = 0;
+  for (size_t i = 0; i < elements.size(); ++i) {
+    const double f = double(luminance(found->irradiance[i])),
+                 e = double(luminance(expected->irradiance[i]));
+    sum += e, difference += f - e, squares += (f - e) * (f - e);
+    variance += double(found->variance[i]), expected_variance += double(expected->variance[i]);
+    split += double(found->split_variance[i]);
+    expected_split += double(expected->split_variance[i]);
+  }
+  const auto n = double(elements.size());
+  ASSERT_GT(sum, 0);
+  EXPECT_LT(std::sqrt(squares / n) / (sum / n), kMostRms);
+  EXPECT_LT(std::abs(difference) / sum, kMostBias);
+  // Noise of a thousandth of the mean light is rounding.
+  const double no_noise = 1e-6 * sum * sum / n;
+  EXPECT_NEAR(variance, expected_variance, 5e-3 * expected_variance + no_noise);
+  EXPECT_NEAR(split, expected_split, 2e-2 * expected_split + no_noise);
+  EXPECT_NEAR(double(found->rays), double(expected->rays), 1e-3 * double(expected->rays));
+}
+
+/// Blocks on a floor, under nothing.
+scene::Scene blocks() {
+  scene::Scene scene;
+  const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f}, {});
+  scene::add_rectangle(scene, {-4, 4, -4, 4}, 0, true, gray);
+  for (const float x : {-2.0f, 0.5f, 1.7f}) {
+    scene::Mesh block;
+    scene::add_box(block, {x, 0, -x}, {x + 0.6f, 0.8f, 0.7f - x}, gray);
+    scene::place(scene, std::move(block));
+  }
+  return scene;
+}
+
+/// A sun with a disc, a sun without, a spot, and a lamp with a range.
+scene::Scene blocks_under_punctual_lights() {
+  scene::Scene scene = blocks();
+  scene::PunctualLight sun, far, spot, lamp;
+  sun.kind = far.kind = scene::LightKind::directional;
+  sun.direction = normalize(Vec3{1, -2, 0.5f}), sun.angular_radius_rad = 0.05f;
+  far.direction = normalize(Vec3{-1, -1, -1}), far.intensity = {0.2f, 0.3f, 0.4f};
+  spot.kind = scene::LightKind::spot, spot.position = {1, 3, 1}, spot.intensity = {9, 8, 7};
+  spot.inner_cone_rad = 0.3f, spot.outer_cone_rad = 0.6f;
+  lamp.position = {-1.5f, 1.5f, 0}, lamp.range_m = 4;
+  scene.lights = {sun, far, spot, lamp};
+  return scene;
+}
+
+/// Hundreds of lamps of both kinds, whose light is drawn.
+scene::Scene blocks_under_many_lamps(bool punctual) {
+  scene::Scene scene = blocks();
+  RandomStream random{2};
+  for (int k = 0; k < 300; ++k) {
+    const float x = 8 * random.next() - 4, z = 8 * random.next() - 4, y = 1.5f + random.next();
+    if (punctual) {
+      scene::PunctualLight lamp;
+      lamp.position = {x, y, z}, lamp.intensity = Rgb{1, 1, 1} * (0.1f + random.next());
+      scene.lights.push_back(lamp);
+      continue;
+    }
+    const float l = 1 + 10 * random.next();
+    const uint32_t material = scene::add_material(scene, "lamp", {}, Rgb{l, l, 2 * l});
+    scene.materials[material].double_sided = k % 3 == 0;
+    scene::add_rectangle(scene, {x, x + 0.1f, z, z + 0.1f}, y, false, material);
+  }
+  return scene;
+}
+
+scene::Scene blocks_under_a_bright_sky() {
+  scene::Scene scene = blocks();
+  scene.environment.width = 16, scene.environment.height = 8;
+  for (int k = 0; k < 128; ++k)
+    scene.environment.radiance.push_back(Rgb{0.2f, 0.1f, 0.1f} * (1 + float(k % 5)));
+  scene.environment.radiance[20] = {90, 80, 70}, scene.environment.radiance[36] = {30, 20, 10};
+  scene.environment.rotation_rad = 0.7f;
+  return scene;
+}
+
+TEST_F(DirectLightOnDevice, IsThatOfTheProcessor) {
+  const auto binary = trace::HierarchyKind::binary, wide = trace::HierarchyKind::wide;
+  expect_the_same(scene::cornell_box(), 64, binary);
+  expect_the_same(scene::cornell_box(), 1, wide);
+  expect_the_same(blocks_under_punctual_lights(), 32, wide);
+  expect_the_same(blocks_under_many_lamps(false), 64, wide);
+  expect_the_same(blocks_under_many_lamps(true), 64, wide);
+  expect_the_same(blocks_under_a_bright_sky(), 64, binary);
+}
+
+// A leaf with holes lets light through by chance; glass and masks alike.
+TEST_F(DirectLightOnDevice, PassesHoles) {
+  scene::Scene scene = blocks_under_punctual_lights();
+  const uint32_t leaf = scene::add_material(scene, "leaf", {0.5f, 0.5f, 0.5f}, {});
+  scene::Texture texture;
+  texture.width = texture.height = 8;
+  for (int k = 0; k < 64; ++k)
+    for (const int c : {255, 255, 255, (k + k / 8) % 2 == 0 ? 255 : 0})
+      texture.rgba.push_back(uint8_t(c));
+  scene.textures.push_back(std::move(texture));
+  scene.materials[leaf].alpha_mode = scene::AlphaMode::mask;
+  scene.materials[leaf].base_color_texture.texture = 0;
+  scene.materials[leaf].base_color_texture.filter = scene::Filter::nearest;
+  scene::add_rectangle(scene, {-3, 3, -3, 3}, 1, true, leaf);
+  scene::Mesh& mesh = scene.meshes[scene.instances.back().mesh];
+  for (const Vec3& p : mesh.positions) mesh.uv0.push_back({p.x, p.z});
+  expect_the_same(scene, 32, trace::HierarchyKind::wide);
+}
+
+// Light with a texture or a profile is the processor's.
+TEST_F(DirectLightOnDevice, IsNotWorkedOutOfLightsThatTheDeviceDoesNotKnow) {
+  Lights lights;
+  lights.triangles.emplace_back();
+  EXPECT_TRUE(device_knows(lights));
+  lights.triangles[0].textured = true;
+  EXPECT_FALSE(device_knows(lights));
+  lights.triangles.clear();
+  lights.punctual.emplace_back();
+  EXPECT_TRUE(device_knows(lights));
+  lights.punctual[0].profile = 0;
+  EXPECT_FALSE(device_knows(lights));
+}
+
+// Only those that are asked for change.
+TEST_F(DirectLightOnDevice, IsThatOfSomeElements) {
+  const scene::Scene scene = scene::cornell_box();
+  const transport::Elements elements = places_of(scene, 200);
+  const Lights lights = collect_lights(scene);
+  const auto tracer = trace::DeviceRayTracer::build(*device_, scene);
+  ASSERT_TRUE(tracer);
+  auto direct = DeviceDirectLight::make(*tracer, *commands_, scene, lights);
+  ASSERT_TRUE(direct);
+  const DirectParams params{.samples = 16};
+  Progress progress;
+  auto all = direct->direct_light(elements, params, progress);
+  ASSERT_TRUE(all);
+  DirectLight some = *all;
+  const std::vector<uint32_t> which{3, 17, 150};
+  ASSERT_TRUE(direct->direct_light_again(elements, which, {.samples = 256}, some, progress));
+  for (size_t i = 0; i < elements.size(); ++i) {
+    if (std::ranges::find(which, uint32_t(i)) != which.end()) continue;
+    EXPECT_EQ(some.irradiance[i], all->irradiance[i]);
+  }
+  DirectLight again = *all;
+  ASSERT_TRUE(direct->direct_light_again(elements, which, params, again, progress));
+  EXPECT_EQ(again.irradiance, all->irradiance) << "the same seed, the same rays";
+  progress.request_cancel();
+  EXPECT_FALSE(direct->direct_light_again(elements, which, params, again, progress));
+}
+
+}  // namespace
+}  // namespace luxel::light

@@ -1,0 +1,5 @@
+// Direct light, by a binary hierarchy.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/binary.glsl"
+#include "direct_light.glsl"

@@ -1,0 +1,102 @@
+// What shines in a scene: ../device_lights.cpp has the structs.
+#include "luxel/base/both_sobol.h"
+#include "luxel/light/both_bright_texel.h"
+#include "luxel/light/both_light_group.h"
+#include "luxel/light/both_punctual_light.h"
+#include "luxel/light/both_triangle_light.h"
+
+struct TriangleLight {
+  vec3 a, b, c, normal;
+  vec3 radiance;
+  float area_m2;
+  uint instance, triangle, piece;
+  uint two_sided;
+};
+// light::LightNode
+struct LightNode {
+  vec3 centre;
+  float radius_m, power;
+  vec3 facing;
+  float even;
+  vec3 axis;
+  float angle_rad, cos_angle, sin_angle, reach_m;
+  uint first, count;
+  uint right_child;  // 0: a leaf
+};
+const uint kPoint = 0, kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
+struct PunctualLight {
+  vec3 intensity, position, direction;
+  float range_m, cos_inner, cos_outer;
+  float disc_height;  // 1 - cos(half of the disc's angle)
+  uint kind, has_disc;
+};
+layout(buffer_reference, scalar) readonly buffer TriangleLights { TriangleLight at[]; };
+layout(buffer_reference, scalar) readonly buffer LightNodes { LightNode at[]; };
+layout(buffer_reference, scalar) readonly buffer PunctualLights { PunctualLight at[]; };
+layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
+layout(buffer_reference, scalar) readonly buffer Doubles { double at[]; };
+layout(buffer_reference, scalar) readonly buffer Pixels { vec3 at[]; };
+
+layout(buffer_reference, scalar) readonly buffer Setup {
+  World world;
+  TriangleLights triangles;  // in the order of the leaves of nodes
+  LightNodes nodes;
+  PunctualLights punctual;
+  Numbers punctual_order;  // leaves of punctual_nodes
+  LightNodes punctual_nodes;
+  // light::Surroundings, and its map.
+  Numbers bright_texels, guide;
+  Doubles below, row_cosine;
+  Pixels pixels;
+  float diagonal_m;  // of the scene
+  float rotation_rad;
+  int map_width;
+  uint triangle_count, punctual_count, punctual_node_count, bright_count;
+};
+
+float luminance(vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+
+LightTriangle triangle_of(TriangleLight light) {
+  return LightTriangle(light.a, light.b, light.c, light.normal, light.area_m2, light.two_sided != 0);
+}
+
+LightGroup group_of(LightNode n) {
+  return LightGroup(n.centre, n.radius_m, n.power, n.facing, n.even, n.axis, n.cos_angle, n.sin_angle,
+                    n.reach_m);
+}
+
+// light::PunctualIncidence; a distance of 0 is infinite.
+struct Incidence {
+  vec3 irradiance, towards;
+  float distance_m;
+};
+Incidence incidence_at(PunctualLight light, vec3 position) {
+  if (light.kind == kDirectional) return Incidence(light.intensity, -light.direction, 0);
+  vec3 to_light = light.position - position;
+  float distance_m = length(to_light);
+  if (distance_m <= 0) return Incidence(vec3(0), vec3(0), 0);
+  vec3 towards = to_light * (1 / distance_m);
+  float share = share_at_distance(distance_m, light.range_m);
+  if (light.kind == kSpot) share *= share_in_cone(-dot(towards, light.direction), light.cos_inner, light.cos_outer);
+  return Incidence(light.intensity * share, towards, distance_m);
+}
+
+// luxel/base/random.h
+vec2 sobol_owen_2d(uint index, uvec2 seed) {
+  return vec2(unit_float(reverse_bits(scramble_upwards(index, seed.x))),
+              unit_float(reverse_bits(scramble_upwards(sobol_second_reversed(index), seed.y))));
+}
+// The first numbers of a RandomStream.
+float random_float(uvec2 seed) { return unit_float(hash64(seed, uvec2(0)).y); }
+vec2 random_vec2(uvec2 seed) {
+  uvec2 bits = hash64(seed, uvec2(0));
+  return vec2(unit_float(bits.y), unit_float(bits.x));
+}
+// std::lround() of what is not below 0.
+uint rounded(double x) { return uint(x) + (x - floor(x) >= 0.5 ? 1 : 0); }
+
+// trace::offset_origin()
+vec3 offset_origin(vec3 position, vec3 normal, float diagonal_m) {
+  vec3 size = abs(position);
+  return position + normal * (3.814697265625e-6 * max(max(size.x, max(size.y, size.z)), diagonal_m));
+}

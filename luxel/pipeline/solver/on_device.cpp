@@ -1,0 +1,15 @@
+#include "luxel/pipeline/solver/on_device.h"
+
+namespace luxel::pipeline {
+
+bool may_go_on_without(const BakeDevice& on, const Error& error) {
+  return on.is_optional &&
+         (error.code == ErrorCode::unsupported || error.code == ErrorCode::no_device ||
+          error.code == ErrorCode::out_of_memory);
+}
+
+std::string warning_without(const BakeDevice& on, const Error& error) {
+  return fmt::format("baked on the processor, not on {}: {}", on.name, error.message);
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,305 @@
+#include "luxel/solve/device/device_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <optional>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/solve/device/device_surroundings.h"
+#include "luxel/solve/device/shaders/hemicubes_binary.comp.h"
+#include "luxel/solve/device/shaders/hemicubes_wide.comp.h"
+#include "luxel/solve/hemicube/item_buffer.h"
+#include "luxel/trace/vulkan/device_ray_tracer.h"
+
+namespace luxel::device {
+namespace {
+
+/// All pixels of a hemicube weigh as much together: a share is a whole number over it.
+constexpr double kWholeWeight = 2147483648.0;  // 2^31
+/// Shares that lie on the device at a time: 64 MB.
+constexpr size_t kSharesAtATime = size_t(1) << 24;
+/// Viewpoints at a time, at most.
+constexpr size_t kMostAtATime = 4096;
+
+// Structs of shaders/hemicubes.glsl.
+
+struct DevicePixel {
+  Vec3 direction;
+  float factor;
+  uint32_t weight;
+};
+struct DeviceViewpoint {
+  Vec3 tangent, bitangent, normal;
+  Vec3 origin;
+  Vec3 geometric_normal;
+};
+struct SeenTriangle {
+  uint32_t first_root, grid;
+  uint32_t other_side;
+  uint32_t flags;
+  Rgb emission;
+
+  static constexpr uint32_t kTwoSided = 1, kEmissive = 2;
+};
+struct DeviceNode {
+  std::array<Vec2, 3> at;
+  std::array<uint32_t, 3> element;
+  uint32_t child;
+};
+struct DeviceView {
+  Rgb emitted;
+  uint32_t back, two_sided_back;
+};
+struct LookSetup {
+  trace::DeviceWorld world;
+  VkDeviceAddress triangles, nodes, pixels, around;
+  uint32_t pixel_count, element_count;
+  uint32_t per_vertex;
+  uint32_t unused = 0;
+};
+struct LookPush {
+  VkDeviceAddress setup, from, views, shares;
+  uint32_t first_group = 0, unused = 0;
+};
+static_assert(sizeof(DevicePixel) == 20 && sizeof(DeviceViewpoint) == 60);
+static_assert(sizeof(SeenTriangle) == 28 && sizeof(DeviceNode) == 40 && sizeof(DeviceView) == 20);
+static_assert(sizeof(LookSetup) == 88);
+
+/// Factors as whole numbers: what rounding takes from one the next gets.
+std::vector<DevicePixel> device_pixels(std::span<const hemicube::Pixel> pixels) {
+  std::vector<DevicePixel> out;
+  double below = 0;
+  uint64_t given = 0;
+  for (const hemicube::Pixel& p : pixels) {
+    below += double(p.factor);
+    const auto upto = uint64_t(std::llround(std::min(below, 1.0) * kWholeWeight));
+    out.push_back({p.direction, p.factor, uint32_t(upto - given)});
+    given = upto;
+  }
+  return out;
+}
+
+/// Whether pixels see emission with a texture.
+bool shines_unevenly(const hemicube::Senders& s) {
+  return s.emission_by_pixels && std::ranges::any_of(s.scene.materials, [](const auto& m) {
+           return max_component(m.emission) > 0 && m.emission_texture.texture != scene::kNone;
+         });
+}
+
+std::vector<SeenTriangle> seen_triangles(const hemicube::Senders& s) {
+  std::vector<SeenTriangle> out;
+  for (uint32_t i = 0; i < s.scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = s.scene.meshes[s.scene.instances[i].mesh];
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const scene::Material& m = s.scene.materials[mesh.triangle_material[t]];
+      const bool shines = s.emission_by_pixels && max_component(m.emission) > 0;
+      const bool is_sheet = !mesh.other_side.empty() && mesh.other_side[t] != scene::kNone;
+      out.push_back({.first_root = s.mesh.first_root[out.size()],
+                     .grid = s.mesh.grid[i],
+                     .other_side = is_sheet ? s.mesh.first_triangle[i] + mesh.other_side[t]
+                                            : trace::DeviceHit::kNoTriangle,
+                     .flags = (scene::reflects_from_behind(m) ? SeenTriangle::kTwoSided : 0) |
+                              (shines ? SeenTriangle::kEmissive : 0),
+                     .emission = m.emission});
+    }
+  }
+  return out;
+}
+
+std::vector<DeviceNode> device_nodes(const hemicube::Senders& s) {
+  const bool per_vertex = s.receivers.kind == hemicube::ElementKind::vertex;
+  std::vector<DeviceNode> out;
+  out.reserve(s.mesh.nodes.size());
+  for (uint32_t i = 0; i < s.mesh.nodes.size(); ++i) {
+    const hemicube::Node& node = s.mesh.nodes[i];
+    DeviceNode& to = out.emplace_back();
+    for (size_t k = 0; k < 3; ++k) to.at[k] = {node.at[k].u, node.at[k].v};
+    to.child = node.child;
+    if (per_vertex)
+      to.element = node.vertex;
+    else
+      to.element = {node.child == 0 ? s.receivers.leaf_of_node[i] : 0, 0, 0};
+  }
+  return out;
+}
+
+DeviceViewpoint device_viewpoint(const hemicube::Viewpoint& from, float diagonal_m) {
+  const Frame frame = hemicube::frame_of_cube(from.normal);
+  return {frame.tangent, frame.bitangent, frame.normal,
+          trace::offset_origin(from.position, from.geometric_normal, diagonal_m),
+          from.geometric_normal};
+}
+
+template <class T>
+Result<gpu::Buffer> uploaded(gpu::Commands& commands, const std::vector<T>& values) {
+  return gpu::uploaded(commands, std::as_bytes(std::span(values)), "the buffer of hemicubes");
+}
+
+/// What looking needs on the device.
+struct Looking {
+  gpu::Commands& commands;
+  size_t elements, at_a_time;
+  gpu::Buffer triangles{}, nodes{}, pixels{}, setup{};
+  DeviceSurroundings around{};
+  gpu::Buffer from{}, from_sent{}, views{}, views_back{}, shares{}, shares_back{};
+  gpu::Pipeline pipeline{};
+  gpu::PieceSize piece{16};  ///< of viewpoints
+};
+
+Status make_room(Looking& l) {
+  const gpu::Device& device = l.commands.device();
+  constexpr std::string_view kWhat = "the buffer of hemicubes";
+  const size_t n = l.at_a_time, shares = n * l.elements * sizeof(uint32_t);
+  using gpu::Access;
+  LUXEL_TRY(l.from, gpu::make_buffer(device, n * sizeof(DeviceViewpoint), Access::device, kWhat));
+  LUXEL_TRY(l.from_sent,
+            gpu::make_buffer(device, n * sizeof(DeviceViewpoint), Access::from_host, kWhat));
+  LUXEL_TRY(l.views, gpu::make_buffer(device, n * sizeof(DeviceView), Access::device, kWhat));
+  LUXEL_TRY(l.views_back, gpu::make_buffer(device, n * sizeof(DeviceView), Access::to_host, kWhat));
+  LUXEL_TRY(l.shares, gpu::make_buffer(device, shares, Access::device, kWhat));
+  LUXEL_TRY(l.shares_back, gpu::make_buffer(device, shares, Access::to_host, kWhat));
+  return {};
+}
+
+Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
+               std::span<const hemicube::Pixel> pixels, Looking& l) {
+  LUXEL_TRY(l.triangles, uploaded(l.commands, seen_triangles(s)));
+  LUXEL_TRY(l.nodes, uploaded(l.commands, device_nodes(s)));
+  LUXEL_TRY(l.pixels, uploaded(l.commands, device_pixels(pixels)));
+  LUXEL_TRY(l.around, upload_surroundings(l.commands, s.scene.environment, s.around));
+  const LookSetup setup{.world = tracer.world(),
+                    .triangles = l.triangles.address,
+                    .nodes = l.nodes.address,
+                    .pixels = l.pixels.address,
+                    .around = l.around.values.address,
+                    .pixel_count = uint32_t(pixels.size()),
+                    .element_count = uint32_t(l.elements),
+                    .per_vertex = s.receivers.kind == hemicube::ElementKind::vertex};
+  LUXEL_TRY(l.setup, uploaded(l.commands, std::vector{setup}));
+  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
+  LUXEL_TRY(l.pipeline,
+            gpu::make_compute_pipeline(
+                tracer.device(),
+                wide ? gpu::Spirv(hemicubes_wide_comp) : gpu::Spirv(hemicubes_binary_comp),
+                {sizeof(LookPush), {}}, {uint32_t(tracer.lets_light_through())}));
+  return make_room(l);
+}
+
+/// Looks from some viewpoints: what they see lies in views_back and shares_back then. Returns the
+/// seconds.
+Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagonal_m, Looking& l) {
+  const gpu::Device& device = l.commands.device();
+  auto* sent = reinterpret_cast<DeviceViewpoint*>(l.from_sent.mapped);
+  for (size_t i = 0; i < from.size(); ++i) sent[i] = device_viewpoint(from[i], diagonal_m);
+  LUXEL_TRY_STATUS(
+      gpu::copy_bytes(l.commands, l.from_sent, l.from, from.size() * sizeof(DeviceViewpoint)));
+  LUXEL_TRY_STATUS(l.commands.run([&](VkCommandBuffer c) {
+    device.vk.vkCmdFillBuffer(c, l.shares.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+    gpu::full_barrier(device, c);
+  }));
+  const LookPush push{l.setup.address, l.from.address, l.views.address, l.shares.address};
+  LUXEL_TRY(const double seconds,
+            gpu::run_groups(l.commands, l.pipeline, push, from.size(), l.piece));
+  LUXEL_TRY_STATUS(
+      gpu::copy_bytes(l.commands, l.views, l.views_back, from.size() * sizeof(DeviceView)));
+  LUXEL_TRY_STATUS(gpu::copy_bytes(l.commands, l.shares, l.shares_back,
+                                   from.size() * l.elements * sizeof(uint32_t)));
+  return seconds;
+}
+
+/// What the k-th of them sees.
+void take_view(const Looking& l, size_t k, hemicube::View& view) {
+  const DeviceView& found = reinterpret_cast<const DeviceView*>(l.views_back.mapped)[k];
+  view.emitted = found.emitted;
+  view.back = float(double(found.back) / kWholeWeight);
+  view.two_sided_back = float(double(found.two_sided_back) / kWholeWeight);
+  view.element.clear(), view.share.clear();
+  const auto* shares = reinterpret_cast<const uint32_t*>(l.shares_back.mapped) + k * l.elements;
+  for (uint32_t i = 0; i < l.elements; ++i) {
+    if (shares[i] == 0) continue;
+    view.element.push_back(i), view.share.push_back(float(double(shares[i]) / kWholeWeight));
+  }
+}
+
+/// Hands views [first, first + count) on, groups of neighbours in order. Returns what `done` has
+/// returned first that is no success.
+Status hand_on(const Looking& l, size_t first, size_t count, const hemicube::OnView& done,
+               Progress& progress) {
+  std::mutex mutex;
+  Status status;
+  parallel_for(count, hemicube::kTileElements, [&](size_t begin, size_t end) {
+    hemicube::View view;
+    for (size_t k = begin; k < end && !progress.cancelled(); ++k) {
+      take_view(l, k, view);
+      const Status kept = done(first + k, view);
+      progress.advance(1);
+      if (kept) continue;
+      const std::lock_guard lock(mutex);
+      if (status) status = kept;
+      progress.request_cancel();
+    }
+  });
+  if (!status) return status;
+  return stopped(progress);
+}
+
+class DeviceLook final : public hemicube::LookDevice {
+ public:
+  explicit DeviceLook(const gpu::Device& device) : device_(&device) {}
+
+  Status begin(const scene::Scene& scene) override {
+    tracer_.reset();
+    LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device_));
+    commands_.emplace(std::move(commands));
+    LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(*device_, scene));
+    tracer_.emplace(std::move(tracer));
+    return {};
+  }
+
+  Result<hemicube::LookSeconds> look(const hemicube::Senders& senders,
+                                     std::span<const hemicube::Viewpoint> from,
+                                     const hemicube::LookParams& params,
+                                     const hemicube::OnView& done, Progress& progress) override {
+    LUXEL_CHECK(tracer_ && senders.receivers.size() > 0);
+    if (shines_unevenly(senders))
+      return fail(
+          ErrorCode::unsupported,
+          "hemicubes on the device know no texture of emission where more than 32 triangles "
+          "shine: bake the scene on the processor");
+    LUXEL_TRY(const std::vector<hemicube::Pixel> pixels,
+              hemicube::pixels_in_tiles(params.resolution, progress));
+    constexpr size_t kTile = hemicube::kTileElements;
+    const size_t elements = senders.receivers.size();
+    const size_t tiles =
+        std::clamp(kSharesAtATime / elements / kTile, size_t(1), kMostAtATime / kTile);
+    Looking l{*commands_, elements, std::min(tiles * kTile, std::max(from.size(), size_t(1)))};
+    LUXEL_TRY_STATUS(prepare(senders, *tracer_, pixels, l));
+    progress.begin("hemicubes", from.size());
+    const float diagonal_m = scene::world_bounds(senders.scene).diagonal();
+    hemicube::LookSeconds out;
+    for (size_t first = 0; first < from.size(); first += l.at_a_time) {
+      LUXEL_TRY_STATUS(stopped(progress));
+      const size_t count = std::min(l.at_a_time, from.size() - first);
+      LUXEL_TRY(const double seconds, look_from(from.subspan(first, count), diagonal_m, l));
+      out.visibility += seconds;
+      LUXEL_TRY_STATUS(hand_on(l, first, count, done, progress));
+    }
+    return out;
+  }
+
+ private:
+  const gpu::Device* device_;
+  std::optional<gpu::Commands> commands_;
+  std::optional<trace::DeviceRayTracer> tracer_;  ///< of the last begin()
+};
+
+}  // namespace
+
+std::unique_ptr<hemicube::LookDevice> look_device(const gpu::Device& device) {
+  return std::make_unique<DeviceLook>(device);
+}
+
+}  // namespace luxel::device

@@ -43,6 +43,13 @@ Result<Table> measure_rays(const std::filesystem::path& shared, int threads);
 Result<Table> measure_gpu(const std::filesystem::path& shared, int threads);
 /// Gather's first round and its sweeps on a graphics device against those of the processor.
 Result<Table> measure_gpu_gather(const std::filesystem::path& shared, int threads);
+/// Direct light on a graphics device against that of the processor.
+Result<Table> measure_gpu_direct(const std::filesystem::path& shared, int threads);
+/// The boxes of [Rodriguez06, section 5.8] by hemicubes of a graphics device against those of the
+/// processor.
+Result<Table> measure_gpu_hemicube(const std::filesystem::path& shared, int threads);
+/// Updates of moved lamps on a graphics device against those on the processor.
+Result<Table> measure_gpu_relight(const std::filesystem::path& shared, int threads);
 /// Those of rays that texels share the directions of, against gather's own: an experiment.
 Result<Table> measure_bundles(const std::filesystem::path& shared, int threads);
 /// The Cornell box of [Moreno05, table 5.1] at four resolutions.
@@ -107,6 +114,9 @@ inline constexpr std::array kBenches{Bench{"rays", measure_rays},
                                      Bench{"rms", measure_rms, measure_rms_in},
                                      Bench{"bundles", measure_bundles},
                                      Bench{"gpu", measure_gpu},
-                                     Bench{"gpu-gather", measure_gpu_gather}};
+                                     Bench{"gpu-gather", measure_gpu_gather},
+                                     Bench{"gpu-direct", measure_gpu_direct},
+                                     Bench{"gpu-hemicube", measure_gpu_hemicube},
+                                     Bench{"gpu-relight", measure_gpu_relight}};
 
 }  // namespace luxel::bench

@@ -6,6 +6,7 @@
 #include "bench/bench.h"
 #include "bench/scenes_of_rays.h"
 #include "luxel/base/clock.h"
+#include "luxel/base/differences.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/device/device_sweep.h"
 #include "luxel/solve/device/landed_rays.h"
@@ -70,20 +71,6 @@ Result<Swept> sweep_on_device(gpu::Commands& commands, device::LandedRays& rays,
   for (const device::DeviceGathered& g : gathered)
     out.light.push_back(luminance(g.sum) / float(rays.samples));
   return out;
-}
-
-/// Differences of `found` to `expected`, over the mean of that.
-struct Differences {
-  double rms = 0, bias = 0;
-};
-Differences differences(std::span<const float> found, std::span<const float> expected) {
-  double sum = 0, difference = 0, squares = 0;
-  for (size_t i = 0; i < found.size(); ++i) {
-    const double d = double(found[i]) - double(expected[i]);
-    sum += double(expected[i]), difference += d, squares += d * d;
-  }
-  const double n = double(found.size());
-  return {std::sqrt(squares / n) / (sum / n), difference / sum};
 }
 
 struct Measured {

@@ -29,9 +29,10 @@ struct BoxRun {
   double visibility_share() const { return look.visibility / (look.visibility + look.summation); }
 };
 
-/// Errors: what the solver says; cancelled.
+/// `device`: what looks; null: the processor. Errors: what the solver says; cancelled.
 Result<BoxRun> run_box(std::string test, const scene::Scene& scene, float element_size_m,
-                       int hemicube, int passes, Progress& progress);
+                       int hemicube, int passes, Progress& progress,
+                       hemicube::LookDevice* device = nullptr);
 
 /// By how much the hemicubes of solve/hemicube err on one exact row of view-factors.csv.
 struct FactorErrors {

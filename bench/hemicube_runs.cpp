@@ -5,7 +5,7 @@
 namespace luxel::bench {
 
 Result<BoxRun> run_box(std::string test, const scene::Scene& scene, float element_size_m,
-                       int hemicube, int passes, Progress& progress) {
+                       int hemicube, int passes, Progress& progress, hemicube::LookDevice* device) {
   BoxRun run;
   run.test = std::move(test), run.scene = scene.name;
   run.hemicube = hemicube, run.passes = passes;
@@ -16,6 +16,7 @@ Result<BoxRun> run_box(std::string test, const scene::Scene& scene, float elemen
   params.element_size_m = element_size_m;
   params.max_error = 0;
   params.bounces = passes;
+  params.device = device;
   LUXEL_TRY(const hemicube::Solution solution,
             hemicube::solve(scene, light::collect_lights(scene), tracer, params, progress));
   run.seconds = seconds_since(start);

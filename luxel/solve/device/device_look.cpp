@@ -145,9 +145,23 @@ struct Looking {
   gpu::Buffer triangles{}, nodes{}, pixels{}, setup{};
   DeviceSurroundings around{};
   gpu::Buffer from{}, from_sent{}, views{}, views_back{}, shares{}, shares_back{};
-  gpu::Pipeline pipeline{};
+};
+
+/// How the device looks: made once for a scene.
+struct LookShader {
+  gpu::Pipeline pipeline;
   gpu::PieceSize piece{16};  ///< of viewpoints
 };
+Result<LookShader> look_shader(const trace::DeviceRayTracer& tracer) {
+  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
+  LookShader out;
+  LUXEL_TRY(out.pipeline,
+            gpu::make_compute_pipeline(
+                tracer.device(),
+                wide ? gpu::Spirv(hemicubes_wide_comp) : gpu::Spirv(hemicubes_binary_comp),
+                {sizeof(LookPush), {}}, {uint32_t(tracer.lets_light_through())}));
+  return out;
+}
 
 Status make_room(Looking& l) {
   const gpu::Device& device = l.commands.device();
@@ -171,26 +185,21 @@ Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
   LUXEL_TRY(l.pixels, uploaded(l.commands, device_pixels(pixels)));
   LUXEL_TRY(l.around, upload_surroundings(l.commands, s.scene.environment, s.around));
   const LookSetup setup{.world = tracer.world(),
-                    .triangles = l.triangles.address,
-                    .nodes = l.nodes.address,
-                    .pixels = l.pixels.address,
-                    .around = l.around.values.address,
-                    .pixel_count = uint32_t(pixels.size()),
-                    .element_count = uint32_t(l.elements),
-                    .per_vertex = s.receivers.kind == hemicube::ElementKind::vertex};
+                        .triangles = l.triangles.address,
+                        .nodes = l.nodes.address,
+                        .pixels = l.pixels.address,
+                        .around = l.around.values.address,
+                        .pixel_count = uint32_t(pixels.size()),
+                        .element_count = uint32_t(l.elements),
+                        .per_vertex = s.receivers.kind == hemicube::ElementKind::vertex};
   LUXEL_TRY(l.setup, uploaded(l.commands, std::vector{setup}));
-  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
-  LUXEL_TRY(l.pipeline,
-            gpu::make_compute_pipeline(
-                tracer.device(),
-                wide ? gpu::Spirv(hemicubes_wide_comp) : gpu::Spirv(hemicubes_binary_comp),
-                {sizeof(LookPush), {}}, {uint32_t(tracer.lets_light_through())}));
   return make_room(l);
 }
 
 /// Looks from some viewpoints: what they see lies in views_back and shares_back then. Returns the
 /// seconds.
-Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagonal_m, Looking& l) {
+Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagonal_m,
+                         LookShader& shader, Looking& l) {
   const gpu::Device& device = l.commands.device();
   auto* sent = reinterpret_cast<DeviceViewpoint*>(l.from_sent.mapped);
   for (size_t i = 0; i < from.size(); ++i) sent[i] = device_viewpoint(from[i], diagonal_m);
@@ -202,7 +211,7 @@ Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagon
   }));
   const LookPush push{l.setup.address, l.from.address, l.views.address, l.shares.address};
   LUXEL_TRY(const double seconds,
-            gpu::run_groups(l.commands, l.pipeline, push, from.size(), l.piece));
+            gpu::run_groups(l.commands, shader.pipeline, push, from.size(), shader.piece));
   LUXEL_TRY_STATUS(
       gpu::copy_bytes(l.commands, l.views, l.views_back, from.size() * sizeof(DeviceView)));
   LUXEL_TRY_STATUS(gpu::copy_bytes(l.commands, l.shares, l.shares_back,
@@ -256,6 +265,7 @@ class DeviceLook final : public hemicube::LookDevice {
     commands_.emplace(std::move(commands));
     LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(*device_, scene));
     tracer_.emplace(std::move(tracer));
+    LUXEL_TRY(shader_, look_shader(*tracer_));
     return {};
   }
 
@@ -283,7 +293,8 @@ class DeviceLook final : public hemicube::LookDevice {
     for (size_t first = 0; first < from.size(); first += l.at_a_time) {
       LUXEL_TRY_STATUS(stopped(progress));
       const size_t count = std::min(l.at_a_time, from.size() - first);
-      LUXEL_TRY(const double seconds, look_from(from.subspan(first, count), diagonal_m, l));
+      LUXEL_TRY(const double seconds,
+                look_from(from.subspan(first, count), diagonal_m, shader_, l));
       out.visibility += seconds;
       LUXEL_TRY_STATUS(hand_on(l, first, count, done, progress));
     }
@@ -294,6 +305,7 @@ class DeviceLook final : public hemicube::LookDevice {
   const gpu::Device* device_;
   std::optional<gpu::Commands> commands_;
   std::optional<trace::DeviceRayTracer> tracer_;  ///< of the last begin()
+  LookShader shader_;
 };
 
 }  // namespace

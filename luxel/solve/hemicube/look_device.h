@@ -15,8 +15,9 @@ class LookDevice {
   /// device is lost.
   virtual Status begin(const scene::Scene& scene) = 0;
 
-  /// look(), in the scene of begin(). The device's seconds count as visibility. Errors: those of look(), something that it
-  /// does not know is seen (ErrorCode::unsupported), no memory, the device is lost.
+  /// look(), in the scene of begin(). The device's seconds count as visibility. Errors: those of
+  /// look(), something that it does not know is seen (ErrorCode::unsupported), no memory, the
+  /// device is lost.
   virtual Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
                                    const LookParams& params, const OnView& done,
                                    Progress& progress) = 0;

@@ -99,6 +99,9 @@ struct RelightData {
   size_t size() const { return area_m2.size(); }
 };
 
+/// One mesh of one material.
+scene::Scene scene_of(const Occluders& occluders);
+
 /// Area-weighted mean of B_e per material.
 std::vector<Rgb> mean_emission_of(const RelightData& data);
 

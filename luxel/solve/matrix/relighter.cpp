@@ -19,17 +19,6 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();
 }
 
-scene::Scene scene_of(const Occluders& occluders) {
-  scene::Scene scene;
-  scene.materials.emplace_back();
-  scene::Mesh mesh;
-  mesh.positions = occluders.position, mesh.triangles = occluders.triangle;
-  mesh.triangle_material.assign(mesh.triangles.size(), 0);
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({"occluders", 0, {}});
-  return scene;
-}
-
 /// B_e of a patch whose material's mean radiosity is to be `wanted` and was `mean`.
 Rgb emission_of(Rgb baked, Rgb mean, Rgb wanted) {
   const auto channel = [](float own, float was, float is) { return was > 0 ? own / was * is : is; };

@@ -1,15 +1,18 @@
-// How far light found on a device is from that of the processor.
+// How far values are from those that they should be.
 #pragma once
 
 #include <cmath>
 #include <span>
 
-namespace luxel::device {
+namespace luxel {
+inline namespace base {
 
-/// Differences of elements' light: root mean square, and of the sums, over the mean.
+/// Over the mean of the expected values.
 struct Differences {
-  double rms = 0, bias = 0;
+  double rms = 0;   ///< root mean square
+  double bias = 0;  ///< of the sums: above 0 where there is more than expected
 };
+/// As many of either, of which the expected ones are not all 0.
 inline Differences differences(std::span<const float> found, std::span<const float> expected) {
   double sum = 0, difference = 0, squares = 0;
   for (size_t i = 0; i < found.size(); ++i) {
@@ -17,7 +20,8 @@ inline Differences differences(std::span<const float> found, std::span<const flo
     sum += double(expected[i]), difference += d, squares += d * d;
   }
   const double n = double(found.size());
-  return {std::sqrt(squares / n) / (sum / n), std::abs(difference) / sum};
+  return {std::sqrt(squares / n) / (sum / n), difference / sum};
 }
 
-}  // namespace luxel::device
+}  // namespace base
+}  // namespace luxel

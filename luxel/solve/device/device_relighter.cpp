@@ -1,0 +1,295 @@
+#include "luxel/solve/device/device_relighter.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "luxel/base/check.h"
+#include "luxel/base/clock.h"
+#include "luxel/gpu/pipeline.h"
+#include "luxel/solve/device/relight_buffers.h"
+#include "luxel/solve/device/shaders/relight_direct_binary.comp.h"
+#include "luxel/solve/device/shaders/relight_direct_wide.comp.h"
+#include "luxel/solve/device/shaders/relight_steps.comp.h"
+#include "luxel/trace/vulkan/device_ray_tracer.h"
+
+namespace luxel::device {
+namespace {
+
+constexpr uint32_t kThreads = 64;  // as the shaders have it
+
+/// kStep of shaders/relight_steps.comp.
+enum class RelightStep : uint8_t {
+  patches,
+  send_leaves,
+  send_up,
+  receive_far,
+  hand_down,
+  receive_leaves,
+  begin_sweeps,
+  powers,
+  late,
+  foresee,
+  end_sweep,
+  bounce,
+  take_product,
+  blocks,
+  finish,
+  places,
+  count_of_steps
+};
+constexpr size_t kSteps = size_t(RelightStep::count_of_steps);
+
+struct StepPush {
+  VkDeviceAddress setup;
+  uint32_t first, count;
+  uint32_t unused = 0;
+  Rgb background;
+};
+static_assert(sizeof(StepPush) == 32);
+
+// Structs of shaders/relight_direct.glsl.
+
+struct MovedLight {
+  Rgb intensity;
+  Vec3 position, direction;
+  float range_m, cos_inner, cos_outer;
+  uint32_t kind;
+};
+static_assert(sizeof(MovedLight) == 52);
+static_assert(sizeof(matrix::PatchPoint) == 24);
+
+struct DirectPush {
+  trace::DeviceWorld world;
+  VkDeviceAddress lights, places, light;
+  uint32_t place_count, light_count;
+  float diagonal_m;
+  uint32_t first_group = 0;
+};
+static_assert(sizeof(DirectPush) == 80);
+
+MovedLight moved_light(const scene::PunctualLight& light) {
+  return {light.intensity,
+          light.position,
+          light.direction,
+          light.range_m,
+          std::cos(light.inner_cone_rad),
+          std::cos(light.outer_cone_rad),
+          uint32_t(light.kind)};
+}
+
+uint32_t groups_of(uint32_t threads) { return (threads + kThreads - 1) / kThreads; }
+
+}  // namespace
+
+struct DeviceRelighter::Impl {
+  const gpu::Device& device;
+  const matrix::RelightData& data;
+  scene::Scene occluders;
+  std::optional<gpu::Commands> commands{};
+  std::optional<trace::DeviceRayTracer> tracer{};
+  RelightBuffers buffers{};
+  gpu::Buffer probes{}, lights{}, probes_sent{};
+  size_t light_room = 0;
+  gpu::Pipeline direct{};
+  std::array<gpu::Pipeline, kSteps> step{};
+  double seconds = 0;
+
+  Status make_pipelines();
+  Status send_lights(std::span<const scene::PunctualLight> wanted);
+  void send_materials(std::span<const Rgb> emission) const;
+  void run(VkCommandBuffer c, RelightStep which, uint32_t groups, uint32_t first, uint32_t count,
+           Rgb background) const;
+  void per_patch(VkCommandBuffer c, RelightStep which, Rgb background = {}) const;
+  void light_probes(VkCommandBuffer c, const matrix::RelightLights& lights_) const;
+  void multiply(VkCommandBuffer c) const;
+  void sweep(VkCommandBuffer c, int sweeps) const;
+  void bounce(VkCommandBuffer c) const;
+};
+
+Status DeviceRelighter::Impl::make_pipelines() {
+  for (size_t k = 0; k < kSteps; ++k) {
+    LUXEL_TRY(step[k], gpu::make_compute_pipeline(device, relight_steps_comp,
+                                                  {sizeof(StepPush), {}}, {uint32_t(k)}));
+  }
+  const bool wide = tracer->kind() == trace::HierarchyKind::wide;
+  LUXEL_TRY(direct, gpu::make_compute_pipeline(device,
+                                               wide ? gpu::Spirv(relight_direct_wide_comp)
+                                                    : gpu::Spirv(relight_direct_binary_comp),
+                                               {sizeof(DirectPush), {}},
+                                               {uint32_t(tracer->lets_light_through())}));
+  return {};
+}
+
+/// Where the processor writes lights is mapped: the device reads them there.
+Status DeviceRelighter::Impl::send_lights(std::span<const scene::PunctualLight> wanted) {
+  if (wanted.size() > light_room || lights.size == 0) {
+    light_room = std::max<size_t>(16, 2 * wanted.size());
+    LUXEL_TRY(lights, gpu::make_buffer(device, light_room * sizeof(MovedLight),
+                                       gpu::Access::from_host, "the buffer of lights"));
+  }
+  auto* to = reinterpret_cast<MovedLight*>(lights.mapped);
+  for (size_t k = 0; k < wanted.size(); ++k) to[k] = moved_light(wanted[k]);
+  return {};
+}
+
+void DeviceRelighter::Impl::send_materials(std::span<const Rgb> emission) const {
+  const std::vector<Rgb> baked =
+      emission.empty() ? matrix::mean_emission_of(data) : std::vector<Rgb>();
+  auto* to = reinterpret_cast<float*>(buffers.radiosity_of_material.mapped);
+  for (size_t m = 0; m < data.material_name.size(); ++m) {
+    const Rgb b = emission.empty() ? baked[m] : emission[m] * kPi;
+    to[3 * m] = b.x, to[3 * m + 1] = b.y, to[3 * m + 2] = b.z;
+  }
+}
+
+/// All that came before is done, then the step runs.
+void DeviceRelighter::Impl::run(VkCommandBuffer c, RelightStep which, uint32_t groups,
+                                uint32_t first, uint32_t count, Rgb background) const {
+  if (groups == 0) return;
+  gpu::full_barrier(device, c);
+  gpu::bind(device, c, step[size_t(which)],
+            StepPush{.setup = buffers.setup.address,
+                     .first = first,
+                     .count = count,
+                     .background = background});
+  device.vk.vkCmdDispatch(c, groups, 1, 1);
+}
+
+void DeviceRelighter::Impl::per_patch(VkCommandBuffer c, RelightStep which, Rgb background) const {
+  run(c, which, groups_of(buffers.patches), 0, buffers.patches, background);
+}
+
+/// Direct light at the probes: by shadow rays, or as the caller has it.
+void DeviceRelighter::Impl::light_probes(VkCommandBuffer c,
+                                         const matrix::RelightLights& from) const {
+  if (!from.direct_at_probes.empty()) {
+    const VkBufferCopy all{0, 0, from.direct_at_probes.size() * sizeof(Rgb)};
+    device.vk.vkCmdCopyBuffer(c, probes_sent.buffer.get(), buffers.at_probe.buffer.get(), 1, &all);
+    return;
+  }
+  const auto count = uint32_t(data.probe.size());
+  gpu::bind(device, c, direct,
+            DirectPush{.world = tracer->world(),
+                       .lights = lights.address,
+                       .places = probes.address,
+                       .light = buffers.at_probe.address,
+                       .place_count = count,
+                       .light_count = uint32_t(from.punctual.size()),
+                       .diagonal_m = scene::world_bounds(occluders).diagonal()});
+  device.vk.vkCmdDispatch(c, std::max(groups_of(count), 1u), 1, 1);
+}
+
+/// product = F radiosity: up the hierarchy, across, and down.
+void DeviceRelighter::Impl::multiply(VkCommandBuffer c) const {
+  const auto per_depth = [&](RelightStep which, const DepthPart& depth) {
+    run(c, which, groups_of(depth.count), depth.first, depth.count, {});
+  };
+  run(c, RelightStep::send_leaves, groups_of(buffers.clusters), 0, buffers.clusters, {});
+  for (size_t d = buffers.depths.size(); d-- > 0;)
+    per_depth(RelightStep::send_up, buffers.depths[d]);
+  run(c, RelightStep::receive_far, buffers.clusters, 0, buffers.clusters, {});
+  for (size_t d = 1; d < buffers.depths.size(); ++d)
+    per_depth(RelightStep::hand_down, buffers.depths[d]);
+  run(c, RelightStep::receive_leaves, buffers.leaves, 0, buffers.leaves, {});
+}
+
+/// matrix::all_bounces()
+void DeviceRelighter::Impl::sweep(VkCommandBuffer c, int sweeps) const {
+  multiply(c);
+  per_patch(c, RelightStep::begin_sweeps);
+  for (int k = 1; k < sweeps; ++k) {
+    run(c, RelightStep::powers, buffers.coarse, 0, buffers.coarse, {});
+    run(c, RelightStep::late, buffers.coarse, 0, buffers.coarse, {});
+    per_patch(c, RelightStep::foresee);
+    multiply(c);
+    per_patch(c, RelightStep::end_sweep);
+  }
+}
+
+/// matrix::irradiance_of()
+void DeviceRelighter::Impl::bounce(VkCommandBuffer c) const {
+  if (data.bounces == 0) return;
+  if (buffers.block_rows > 0) {
+    run(c, RelightStep::blocks, buffers.block_rows, 0, buffers.block_rows, {});
+    return per_patch(c, RelightStep::take_product);
+  }
+  if (data.bounces < 0) return sweep(c, std::get<matrix::HierarchicalCodec>(data.codec).sweeps);
+  for (int k = 0; k < data.bounces; ++k) {
+    per_patch(c, RelightStep::bounce);
+    multiply(c);
+    per_patch(c, RelightStep::take_product);
+  }
+}
+
+DeviceRelighter::DeviceRelighter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+DeviceRelighter::DeviceRelighter(DeviceRelighter&&) noexcept = default;
+DeviceRelighter& DeviceRelighter::operator=(DeviceRelighter&&) noexcept = default;
+DeviceRelighter::~DeviceRelighter() = default;
+
+Result<DeviceRelighter> DeviceRelighter::make(const gpu::Device& device,
+                                              const matrix::RelightData& data) {
+  std::unique_ptr<Impl> impl(new Impl{device, data, matrix::scene_of(data.occluders)});
+  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
+  impl->commands.emplace(std::move(commands));
+  LUXEL_TRY(impl->buffers, upload_relight_data(*impl->commands, data));
+  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, impl->occluders));
+  impl->tracer.emplace(std::move(tracer));
+  static constexpr matrix::PatchPoint kNone{};
+  const std::span<const matrix::PatchPoint> probes =
+      data.probe.empty() ? std::span(&kNone, 1) : std::span<const matrix::PatchPoint>(data.probe);
+  LUXEL_TRY(impl->probes,
+            gpu::uploaded(*impl->commands, std::as_bytes(probes), "the buffer of probes"));
+  LUXEL_TRY(impl->probes_sent, gpu::make_buffer(device, probes.size() * sizeof(Rgb),
+                                                gpu::Access::from_host, "the buffer of probes"));
+  LUXEL_TRY_STATUS(impl->make_pipelines());
+  return DeviceRelighter(std::move(impl));
+}
+
+Status DeviceRelighter::update(const matrix::RelightLights& lights) {
+  Impl& my = *impl_;
+  LUXEL_CHECK(lights.emission.empty() || lights.emission.size() == my.data.material_name.size());
+  LUXEL_CHECK(lights.direct_at_probes.empty() ||
+              lights.direct_at_probes.size() == my.data.probe.size());
+  const auto start = Clock::now();
+  LUXEL_TRY_STATUS(my.send_lights(lights.punctual));
+  my.send_materials(lights.emission);
+  if (!lights.direct_at_probes.empty())
+    std::memcpy(my.probes_sent.mapped, lights.direct_at_probes.data(),
+                lights.direct_at_probes.size_bytes());
+  LUXEL_TRY_STATUS(my.commands->run([&](VkCommandBuffer c) {
+    my.light_probes(c, lights);
+    my.per_patch(c, RelightStep::patches, lights.background);
+    my.bounce(c);
+    my.per_patch(c, RelightStep::finish);
+    my.run(c, RelightStep::places, groups_of(my.buffers.places), 0, my.buffers.places, {});
+    gpu::full_barrier(my.device, c);
+  }));
+  my.seconds = seconds_since(start);
+  return {};
+}
+
+Status DeviceRelighter::read(matrix::Relit& out) {
+  Impl& my = *impl_;
+  const auto read = [&](const gpu::Buffer& from, size_t count, std::vector<Rgb>& to) -> Status {
+    to.resize(count);
+    if (count == 0) return {};
+    LUXEL_TRY(const gpu::Buffer here,
+              gpu::make_buffer(my.device, count * sizeof(Rgb), gpu::Access::to_host,
+                               "the buffer of relit light"));
+    LUXEL_TRY_STATUS(gpu::copy_bytes(*my.commands, from, here, here.size));
+    std::memcpy(to.data(), here.mapped, here.size);
+    return {};
+  };
+  LUXEL_TRY_STATUS(read(my.buffers.direct, my.data.size(), out.direct));
+  LUXEL_TRY_STATUS(read(my.buffers.indirect, my.data.size(), out.indirect));
+  return read(my.buffers.at_place, my.buffers.places, out.indirect_at_points);
+}
+
+VkDeviceAddress DeviceRelighter::indirect_at_points() const {
+  return impl_->buffers.at_place.address;
+}
+double DeviceRelighter::seconds() const { return impl_->seconds; }
+
+}  // namespace luxel::device

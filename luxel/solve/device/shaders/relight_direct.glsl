@@ -1,0 +1,58 @@
+// Light of punctual lights that move: a shadow ray per place and light, as matrix::live_light().
+#include "luxel/light/both_punctual_light.h"
+layout(local_size_x = 64) in;
+
+const uint kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
+struct PunctualLight {
+  vec3 intensity, position, direction;
+  float range_m, cos_inner, cos_outer;
+  uint kind;
+};
+struct Place {
+  vec3 position, normal;
+};
+layout(buffer_reference, scalar) readonly buffer PunctualLights { PunctualLight at[]; };
+layout(buffer_reference, scalar) readonly buffer Places { Place at[]; };
+layout(buffer_reference, scalar) writeonly buffer Colors { vec3 at[]; };
+
+layout(push_constant, scalar) uniform Push {
+  World world;
+  PunctualLights lights;
+  Places places;
+  Colors light;
+  uint place_count, light_count;
+  float diagonal_m;  // of the scene
+  uint first_group;
+};
+
+vec3 offset_origin(vec3 position, vec3 normal) {
+  vec3 size = abs(position);
+  return position + normal * (3.814697265625e-6 * max(max(size.x, max(size.y, size.z)), diagonal_m));
+}
+
+vec3 light_of(PunctualLight l, Place p) {
+  vec3 towards = -l.direction;
+  float t_max = uintBitsToFloat(0x7f800000u), share = 1;
+  if (l.kind != kDirectional) {
+    vec3 to_light = l.position - p.position;
+    float distance_m = length(to_light);
+    if (distance_m <= 0) return vec3(0);
+    towards = to_light * (1 / distance_m);
+    share = share_at_distance(distance_m, l.range_m);
+    if (l.kind == kSpot) share *= share_in_cone(-dot(towards, l.direction), l.cos_inner, l.cos_outer);
+    t_max = distance_m * 0.9999;
+  }
+  float cosine = dot(p.normal, towards);
+  vec3 arriving = l.intensity * (share * cosine);
+  if (!(cosine > 0) || !(max(arriving.x, max(arriving.y, arriving.z)) > 0)) return vec3(0);
+  Ray ray = Ray(offset_origin(p.position, p.normal), towards, 0, t_max);
+  return trace(world, ray, true).number == kNoTriangle ? arriving : vec3(0);
+}
+
+void main() {
+  uint i = (first_group + gl_WorkGroupID.x) * 64 + gl_LocalInvocationID.x;
+  if (i >= place_count) return;
+  vec3 sum = vec3(0);
+  for (uint k = 0; k < light_count; ++k) sum += light_of(lights.at[k], places.at[i]);
+  light.at[i] = sum;
+}

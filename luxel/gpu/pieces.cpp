@@ -13,10 +13,11 @@ constexpr double kPieceSeconds = 0.02, kMostGrowth = 4;
 }  // namespace
 
 Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, PieceSize& size,
-                             const RecordPiece& record) {
+                             const RecordPiece& record, const Progress* asked) {
   LUXEL_CHECK(most > 0);
   double seconds = 0;
   for (size_t first = 0; first < count;) {
+    if (asked) LUXEL_TRY_STATUS(stopped(*asked));
     const size_t some = std::min({std::max<size_t>(size.items, 1), most, count - first});
     const auto start = Clock::now();
     LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {

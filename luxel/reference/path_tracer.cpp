@@ -7,6 +7,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/reference/paths.h"
+#include "luxel/reference/sums.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/transport/back_faces.h"
 
@@ -15,33 +16,6 @@ namespace {
 
 /// Paths that are followed together: many enough for full packets, few enough for a core's cache.
 constexpr size_t kBatch = 2048;
-
-/// Sums of independent values: their mean and its standard error. In double, which adds up 2^29
-/// floats of one size without a rounding.
-struct Sums {
-  double r = 0, g = 0, b = 0, l = 0;
-  double r2 = 0, g2 = 0, b2 = 0, l2 = 0;
-
-  void add(Rgb value) {
-    const double x = double(value.x), y = double(value.y), z = double(value.z);
-    const double y_lum = double(luminance(value));
-    r += x, g += y, b += z, l += y_lum;
-    r2 += x * x, g2 += y * y, b2 += z * z, l2 += y_lum * y_lum;
-  }
-};
-
-/// sqrt(s^2 / n), s^2 the unbiased estimate of the variance. One value says nothing about its own
-/// error: it counts as wholly uncertain.
-double standard_error(double sum, double sum2, double n) {
-  if (n < 2) return std::abs(sum);
-  const double variance = (sum2 - sum * sum / n) / (n - 1);
-  return variance < 0 ? 0 : std::sqrt(variance / n);
-}
-Rgb mean_of(const Sums& s, double n) { return {float(s.r / n), float(s.g / n), float(s.b / n)}; }
-Rgb error_of(const Sums& s, double n) {
-  return {float(standard_error(s.r, s.r2, n)), float(standard_error(s.g, s.g2, n)),
-          float(standard_error(s.b, s.b2, n))};
-}
 
 /// Receivers or pixels that one task works on: some batches' worth, so that buffers are reused, yet
 /// enough tasks for all threads. Depends on nothing but the size of the work.
@@ -88,12 +62,6 @@ Result<uint64_t> run_tasks(const TracedScene& world, size_t count, const PathPar
   });
   LUXEL_TRY_STATUS(stopped(progress));
   return rays.load();
-}
-
-double relative_error(std::span<const float> errors, double sum_of_luminance) {
-  double sum2 = 0;
-  for (const float e : errors) sum2 += double(e) * double(e);
-  return sum_of_luminance > 0 ? std::sqrt(sum2 * double(errors.size())) / sum_of_luminance : 0;
 }
 
 uint64_t path_seed(uint64_t seed, size_t item, size_t sample) {

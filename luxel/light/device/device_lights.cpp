@@ -38,10 +38,9 @@ struct Setup {
   VkDeviceAddress bright_texels, guide, below, row_cosine, pixels;
   float diagonal_m, rotation_rad;
   int32_t map_width;
-  uint32_t triangle_count, punctual_count, punctual_node_count, bright_count;
-  uint32_t unused = 0;
+  uint32_t triangle_count, punctual_count, bright_count;
 };
-static_assert(sizeof(Setup) == 152);
+static_assert(sizeof(Setup) == 144);
 
 DeviceTriangleLight device_light(const TriangleLight& light) {
   return {light.a,       light.b,        light.c,        light.normal, light.mean_radiance,
@@ -123,7 +122,6 @@ Result<DeviceLights> upload_lights(gpu::Commands& commands, const trace::DeviceR
                     .map_width = scene.environment.width,
                     .triangle_count = uint32_t(lights.triangles.size()),
                     .punctual_count = uint32_t(lights.punctual.size()),
-                    .punctual_node_count = uint32_t(lights.punctual_nodes.size()),
                     .bright_count = uint32_t(lights.around.bright_texels.size())};
   LUXEL_TRY(out.setup, uploaded<Setup>(commands, std::span(&setup, 1)));
   return out;

@@ -14,7 +14,7 @@ namespace luxel::light {
 namespace {
 
 constexpr size_t kGroup = 64;  // as the shaders have it
-/// Elements that are sent at a time: 11 MB, and often enough to be asked whether to stop.
+/// Elements that are sent at a time: 11 MB.
 constexpr size_t kElementsAtATime = size_t(1) << 18;
 
 // Structs of shaders/shadow_rays.glsl.
@@ -47,6 +47,10 @@ enum class DirectStep : uint8_t {
   drawn_punctual_lights,
   bright_texels
 };
+
+// These numbers stand in shaders/direct_light.glsl and draw_lights.glsl, too: an array has room for
+// so many.
+static_assert(kMaxAllTriangles == 32 && kMaxAllPunctual == 64 && DrawParams{}.max_cut == 16);
 
 /// What a scene's lights need.
 std::vector<DirectStep> steps_of(const Lights& lights) {
@@ -101,23 +105,22 @@ Status DeviceDirectLight::make_room(size_t count) {
 }
 
 /// Works the light of the first `count` receivers of sent_ out: it lies in answered_ then.
-Status DeviceDirectLight::light_some(size_t count, int samples) {
+Status DeviceDirectLight::light_some(size_t count, int samples, const Progress& progress) {
   const gpu::Device& device = commands_->device();
   LUXEL_TRY_STATUS(gpu::copy_bytes(*commands_, sent_, receivers_, count * sizeof(DeviceReceiver)));
   LUXEL_TRY_STATUS(commands_->run([&](VkCommandBuffer c) {
     device.vk.vkCmdFillBuffer(c, light_.buffer.get(), 0, VK_WHOLE_SIZE, 0);
-    gpu::full_barrier(device, c);
   }));
   const DirectPush push{.setup = lights_.setup.address,
                         .receivers = receivers_.address,
                         .light = light_.address,
                         .count = uint32_t(count),
                         .samples = uint32_t(samples)};
+  // Each step adds to what those before it have found.
   for (Step& step : steps_) {
-    LUXEL_TRY(const double took, gpu::run_groups(*commands_, step.pipeline, push,
-                                                 (count + kGroup - 1) / kGroup, step.piece));
-    // Each step adds to what those before it have found.
-    LUXEL_TRY_STATUS(commands_->run([&](VkCommandBuffer c) { gpu::full_barrier(device, c); }));
+    LUXEL_TRY(const double took,
+              gpu::run_groups(*commands_, step.pipeline, push, (count + kGroup - 1) / kGroup,
+                              step.piece, &progress));
     seconds_ += took;
   }
   return gpu::copy_bytes(*commands_, light_, answered_, count * sizeof(DeviceLightAt));
@@ -144,7 +147,7 @@ Status DeviceDirectLight::direct_light_again(const transport::Elements& elements
                         uint32_t(seed), uint32_t(seed >> 32)};
       }
     });
-    LUXEL_TRY_STATUS(light_some(these.size(), params.samples));
+    LUXEL_TRY_STATUS(light_some(these.size(), params.samples, progress));
     const auto* light = reinterpret_cast<const DeviceLightAt*>(answered_.mapped);
     for (size_t k = 0; k < these.size(); ++k) {
       const uint32_t i = these[k];

@@ -9,12 +9,14 @@
 namespace luxel::light {
 
 /// Direct light of one scene on a device, by the same shadow rays as light::direct_light(), up to
-/// rounding: those of each element have the same seed. Everything that it is made with is kept by
-/// reference and must outlive it. One thread at a time uses it.
+/// rounding: those of each element have the same seed. Where both triangles and punctual lights are
+/// drawn, the variance of either is estimated for itself. Everything that it is made with is kept
+/// by reference and must outlive it. One thread at a time uses it.
 class DeviceDirectLight {
  public:
   /// The device has double precision (gpu::Device::has_doubles) and knows all of the lights
-  /// (device_knows()). Errors: no memory, the driver does not take a shader, the device is lost.
+  /// (device_knows()), and nothing in the scene tints light. Errors: no memory, the driver does not
+  /// take a shader, the device is lost.
   static Result<DeviceDirectLight> make(const trace::DeviceRayTracer& tracer,
                                         gpu::Commands& commands, const scene::Scene& scene,
                                         const Lights& lights);
@@ -41,7 +43,7 @@ class DeviceDirectLight {
   explicit DeviceDirectLight(gpu::Commands& commands) : commands_(&commands) {}
   Status make_steps(const trace::DeviceRayTracer& tracer, const Lights& lights);
   Status make_room(size_t count);
-  Status light_some(size_t count, int samples);
+  Status light_some(size_t count, int samples, const Progress& progress);
 
   gpu::Commands* commands_;
   DeviceLights lights_;

@@ -203,7 +203,6 @@ Result<gather::Gather> run_on_any(const BakeDevice* on, GatherCall call, std::st
   auto out = run_on(*on, call, progress);
   if (out) device = on->name;
   if (out || !may_go_on_without(*on, out.error())) return out;
-  on->rays->forget();
   warnings.push_back(warning_without(*on, out.error()));
   if (call.params.seconds > 0)
     call.params.seconds = std::max(call.params.seconds - seconds_since(start), 1e-3);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/base/check.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
@@ -70,6 +71,7 @@ Result<hemicube::Solution> solve_on_any(const light::TexelScene& in, const BakeD
     return hemicube::solve(in.scene, in.lights, in.tracer, params, progress, observer);
   };
   if (!on) return run();
+  LUXEL_CHECK(on->look);
   params.device = on->look;
   auto out = run();
   if (out) device = on->name;

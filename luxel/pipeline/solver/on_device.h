@@ -8,8 +8,8 @@
 
 namespace luxel::pipeline {
 
-/// Whether the processor may do what the device has failed at: it is optional, and the error is its
-/// own.
+/// Whether the processor may do what the device has failed at: it is optional, and the error is one
+/// that a device can have.
 bool may_go_on_without(const BakeDevice& on, const Error& error);
 
 /// The warning that says so.

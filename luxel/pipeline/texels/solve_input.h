@@ -89,7 +89,7 @@ struct TexelLight {
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files
   uint64_t elements = 0;           ///< of the solver's own mesh, when it has one
-  std::string device;              ///< BakeDevice::name, if it traced rays
+  std::string device;              ///< BakeDevice::name, if it took part
   std::vector<std::string> warnings;
   std::optional<VertexLit> vertex_lit;  ///< with --vertex-colors
 };

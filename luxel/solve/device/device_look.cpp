@@ -12,17 +12,18 @@
 #include "luxel/solve/device/shaders/hemicubes_binary.comp.h"
 #include "luxel/solve/device/shaders/hemicubes_wide.comp.h"
 #include "luxel/solve/hemicube/item_buffer.h"
+#include "luxel/trace/vulkan/device_pictures.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
 
 namespace luxel::device {
 namespace {
 
-/// All pixels of a hemicube weigh as much together: a share is a whole number over it.
+/// The weights of all pixels sum to this. A share is a sum of weights, divided by it.
 constexpr double kWholeWeight = 2147483648.0;  // 2^31
-/// Shares that lie on the device at a time: 64 MB.
+/// Shares that lie on the device at a time, and here: 64 MB, or those of one tile of viewpoints.
 constexpr size_t kSharesAtATime = size_t(1) << 24;
-/// Viewpoints at a time, at most.
-constexpr size_t kMostAtATime = 4096;
+/// Viewpoints at a time, at most, and their rays: progress moves on after them.
+constexpr size_t kMostAtATime = 4096, kMostRaysAtATime = size_t(1) << 26;
 
 // Structs of shaders/hemicubes.glsl.
 
@@ -84,9 +85,18 @@ std::vector<DevicePixel> device_pixels(std::span<const hemicube::Pixel> pixels) 
 
 /// Whether pixels see emission with a texture.
 bool shines_unevenly(const hemicube::Senders& s) {
-  return s.emission_by_pixels && std::ranges::any_of(s.scene.materials, [](const auto& m) {
-           return max_component(m.emission) > 0 && m.emission_texture.texture != scene::kNone;
-         });
+  if (!s.emission_by_pixels) return false;
+  for (const scene::Instance& i : s.scene.instances) {
+    const scene::Mesh& mesh = s.scene.meshes[i.mesh];
+    for (const uint32_t number : mesh.triangle_material) {
+      const scene::Material& m = s.scene.materials[number];
+      const scene::TextureRef& ref = m.emission_texture;
+      if (max_component(m.emission) > 0 && ref.texture != scene::kNone &&
+          !trace::texture_coordinates(mesh, ref).empty())
+        return true;
+    }
+  }
+  return false;
 }
 
 std::vector<SeenTriangle> seen_triangles(const hemicube::Senders& s) {
@@ -199,7 +209,7 @@ Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
 /// Looks from some viewpoints: what they see lies in views_back and shares_back then. Returns the
 /// seconds.
 Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagonal_m,
-                         LookShader& shader, Looking& l) {
+                         LookShader& shader, Looking& l, const Progress& progress) {
   const gpu::Device& device = l.commands.device();
   auto* sent = reinterpret_cast<DeviceViewpoint*>(l.from_sent.mapped);
   for (size_t i = 0; i < from.size(); ++i) sent[i] = device_viewpoint(from[i], diagonal_m);
@@ -207,11 +217,10 @@ Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagon
       gpu::copy_bytes(l.commands, l.from_sent, l.from, from.size() * sizeof(DeviceViewpoint)));
   LUXEL_TRY_STATUS(l.commands.run([&](VkCommandBuffer c) {
     device.vk.vkCmdFillBuffer(c, l.shares.buffer.get(), 0, VK_WHOLE_SIZE, 0);
-    gpu::full_barrier(device, c);
   }));
   const LookPush push{l.setup.address, l.from.address, l.views.address, l.shares.address};
-  LUXEL_TRY(const double seconds,
-            gpu::run_groups(l.commands, shader.pipeline, push, from.size(), shader.piece));
+  LUXEL_TRY(const double seconds, gpu::run_groups(l.commands, shader.pipeline, push, from.size(),
+                                                  shader.piece, &progress));
   LUXEL_TRY_STATUS(
       gpu::copy_bytes(l.commands, l.views, l.views_back, from.size() * sizeof(DeviceView)));
   LUXEL_TRY_STATUS(gpu::copy_bytes(l.commands, l.shares, l.shares_back,
@@ -269,6 +278,8 @@ class DeviceLook final : public hemicube::LookDevice {
     return {};
   }
 
+  void forget() override { tracer_.reset(), shader_ = {}; }
+
   Result<hemicube::LookSeconds> look(const hemicube::Senders& senders,
                                      std::span<const hemicube::Viewpoint> from,
                                      const hemicube::LookParams& params,
@@ -283,8 +294,9 @@ class DeviceLook final : public hemicube::LookDevice {
               hemicube::pixels_in_tiles(params.resolution, progress));
     constexpr size_t kTile = hemicube::kTileElements;
     const size_t elements = senders.receivers.size();
-    const size_t tiles =
-        std::clamp(kSharesAtATime / elements / kTile, size_t(1), kMostAtATime / kTile);
+    const size_t at_a_time = std::min({kSharesAtATime / elements, kMostAtATime,
+                                       kMostRaysAtATime / hemicube::pixels_of(params.resolution)});
+    const size_t tiles = std::max<size_t>(at_a_time / kTile, 1);
     Looking l{*commands_, elements, std::min(tiles * kTile, std::max(from.size(), size_t(1)))};
     LUXEL_TRY_STATUS(prepare(senders, *tracer_, pixels, l));
     progress.begin("hemicubes", from.size());
@@ -294,7 +306,7 @@ class DeviceLook final : public hemicube::LookDevice {
       LUXEL_TRY_STATUS(stopped(progress));
       const size_t count = std::min(l.at_a_time, from.size() - first);
       LUXEL_TRY(const double seconds,
-                look_from(from.subspan(first, count), diagonal_m, shader_, l));
+                look_from(from.subspan(first, count), diagonal_m, shader_, l, progress));
       out.visibility += seconds;
       LUXEL_TRY_STATUS(hand_on(l, first, count, done, progress));
     }

@@ -165,6 +165,7 @@ TEST_F(HemicubesOnDevice, RefuseTexturedLightThatPixelsSee) {
   scene::Texture& texture = scene.textures.emplace_back();
   texture.width = texture.height = 1, texture.rgba = {255, 128, 0, 255};
   scene.materials[1].emission_texture.texture = 0;
+  for (scene::Mesh& m : scene.meshes) m.uv0.resize(m.positions.size());
   const hemicube::Mesh mesh = hemicube::testing::mesh_of(scene);
   const hemicube::Receivers receivers = make_receivers(scene, mesh, ElementKind::vertex);
   const auto tracer = trace::RayTracer::build(scene);

@@ -7,7 +7,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
-#include "luxel/gpu/pipeline.h"
+#include "luxel/gpu/pieces.h"
 #include "luxel/solve/device/relight_buffers.h"
 #include "luxel/solve/device/shaders/relight_direct_binary.comp.h"
 #include "luxel/solve/device/shaders/relight_direct_wide.comp.h"
@@ -18,6 +18,8 @@ namespace luxel::device {
 namespace {
 
 constexpr uint32_t kThreads = 64;  // as the shaders have it
+/// Shadow rays that are part of an update's one command buffer, at most.
+constexpr uint64_t kMostRaysAtOnce = uint64_t(1) << 22;
 
 /// kStep of shaders/relight_steps.comp.
 enum class RelightStep : uint8_t {
@@ -44,7 +46,7 @@ constexpr size_t kSteps = size_t(RelightStep::count_of_steps);
 struct StepPush {
   VkDeviceAddress setup;
   uint32_t first, count;
-  uint32_t unused = 0;
+  uint32_t first_group = 0;
   Rgb background;
 };
 static_assert(sizeof(StepPush) == 32);
@@ -91,8 +93,10 @@ struct DeviceRelighter::Impl {
   std::optional<trace::DeviceRayTracer> tracer{};
   RelightBuffers buffers{};
   gpu::Buffer probes{}, lights{}, probes_sent{};
-  size_t light_room = 0;
+  float diagonal_m = 0;
+  std::vector<Rgb> mean_emission{};  ///< B_e per material, as baked
   gpu::Pipeline direct{};
+  gpu::PieceSize direct_piece{};  ///< of groups, where direct light is not part of the one buffer
   std::array<gpu::Pipeline, kSteps> step{};
   double seconds = 0;
 
@@ -102,7 +106,11 @@ struct DeviceRelighter::Impl {
   void run(VkCommandBuffer c, RelightStep which, uint32_t groups, uint32_t first, uint32_t count,
            Rgb background) const;
   void per_patch(VkCommandBuffer c, RelightStep which, Rgb background = {}) const;
-  void light_probes(VkCommandBuffer c, const matrix::RelightLights& lights_) const;
+  template <class Push>
+  void dispatch(VkCommandBuffer c, const gpu::Pipeline& pipeline, Push push, uint32_t groups) const;
+  DirectPush direct_push(const matrix::RelightLights& from) const;
+  bool has_many_rays(const matrix::RelightLights& from) const;
+  void light_probes(VkCommandBuffer c, const matrix::RelightLights& from) const;
   void multiply(VkCommandBuffer c) const;
   void sweep(VkCommandBuffer c, int sweeps) const;
   void bounce(VkCommandBuffer c) const;
@@ -124,10 +132,10 @@ Status DeviceRelighter::Impl::make_pipelines() {
 
 /// Where the processor writes lights is mapped: the device reads them there.
 Status DeviceRelighter::Impl::send_lights(std::span<const scene::PunctualLight> wanted) {
-  if (wanted.size() > light_room || lights.size == 0) {
-    light_room = std::max<size_t>(16, 2 * wanted.size());
-    LUXEL_TRY(lights, gpu::make_buffer(device, light_room * sizeof(MovedLight),
-                                       gpu::Access::from_host, "the buffer of lights"));
+  if (lights.size == 0 || wanted.size() * sizeof(MovedLight) > lights.size) {
+    const size_t room = std::max<size_t>(16, 2 * wanted.size());
+    LUXEL_TRY(lights, gpu::make_buffer(device, room * sizeof(MovedLight), gpu::Access::from_host,
+                                       "the buffer of lights"));
   }
   auto* to = reinterpret_cast<MovedLight*>(lights.mapped);
   for (size_t k = 0; k < wanted.size(); ++k) to[k] = moved_light(wanted[k]);
@@ -135,12 +143,21 @@ Status DeviceRelighter::Impl::send_lights(std::span<const scene::PunctualLight> 
 }
 
 void DeviceRelighter::Impl::send_materials(std::span<const Rgb> emission) const {
-  const std::vector<Rgb> baked =
-      emission.empty() ? matrix::mean_emission_of(data) : std::vector<Rgb>();
   auto* to = reinterpret_cast<float*>(buffers.radiosity_of_material.mapped);
   for (size_t m = 0; m < data.material_name.size(); ++m) {
-    const Rgb b = emission.empty() ? baked[m] : emission[m] * kPi;
+    const Rgb b = emission.empty() ? mean_emission[m] : emission[m] * kPi;
     to[3 * m] = b.x, to[3 * m + 1] = b.y, to[3 * m + 2] = b.z;
+  }
+}
+
+/// As many groups as are wanted, of which a device takes only so many at a time.
+template <class Push>
+void DeviceRelighter::Impl::dispatch(VkCommandBuffer c, const gpu::Pipeline& pipeline, Push push,
+                                     uint32_t groups) const {
+  const uint32_t most = device.limits.maxComputeWorkGroupCount[0];
+  for (push.first_group = 0; push.first_group < groups; push.first_group += most) {
+    gpu::bind(device, c, pipeline, push);
+    device.vk.vkCmdDispatch(c, std::min(most, groups - push.first_group), 1, 1);
   }
 }
 
@@ -149,16 +166,31 @@ void DeviceRelighter::Impl::run(VkCommandBuffer c, RelightStep which, uint32_t g
                                 uint32_t first, uint32_t count, Rgb background) const {
   if (groups == 0) return;
   gpu::full_barrier(device, c);
-  gpu::bind(device, c, step[size_t(which)],
-            StepPush{.setup = buffers.setup.address,
-                     .first = first,
-                     .count = count,
-                     .background = background});
-  device.vk.vkCmdDispatch(c, groups, 1, 1);
+  dispatch(
+      c, step[size_t(which)],
+      StepPush{
+          .setup = buffers.setup.address, .first = first, .count = count, .background = background},
+      groups);
 }
 
 void DeviceRelighter::Impl::per_patch(VkCommandBuffer c, RelightStep which, Rgb background) const {
   run(c, which, groups_of(buffers.patches), 0, buffers.patches, background);
+}
+
+DirectPush DeviceRelighter::Impl::direct_push(const matrix::RelightLights& from) const {
+  return {.world = tracer->world(),
+          .lights = lights.address,
+          .places = probes.address,
+          .light = buffers.at_probe.address,
+          .place_count = uint32_t(data.probe.size()),
+          .light_count = uint32_t(from.punctual.size()),
+          .diagonal_m = diagonal_m};
+}
+
+/// Whether shadow rays are so many that they go to the device in pieces of their own.
+bool DeviceRelighter::Impl::has_many_rays(const matrix::RelightLights& from) const {
+  return from.direct_at_probes.empty() &&
+         uint64_t(data.probe.size()) * from.punctual.size() > kMostRaysAtOnce;
 }
 
 /// Direct light at the probes: by shadow rays, or as the caller has it.
@@ -169,16 +201,8 @@ void DeviceRelighter::Impl::light_probes(VkCommandBuffer c,
     device.vk.vkCmdCopyBuffer(c, probes_sent.buffer.get(), buffers.at_probe.buffer.get(), 1, &all);
     return;
   }
-  const auto count = uint32_t(data.probe.size());
-  gpu::bind(device, c, direct,
-            DirectPush{.world = tracer->world(),
-                       .lights = lights.address,
-                       .places = probes.address,
-                       .light = buffers.at_probe.address,
-                       .place_count = count,
-                       .light_count = uint32_t(from.punctual.size()),
-                       .diagonal_m = scene::world_bounds(occluders).diagonal()});
-  device.vk.vkCmdDispatch(c, std::max(groups_of(count), 1u), 1, 1);
+  if (has_many_rays(from)) return;
+  dispatch(c, direct, direct_push(from), groups_of(uint32_t(data.probe.size())));
 }
 
 /// product = F radiosity: up the hierarchy, across, and down.
@@ -233,6 +257,8 @@ Result<DeviceRelighter> DeviceRelighter::make(const gpu::Device& device,
   std::unique_ptr<Impl> impl(new Impl{device, data, matrix::scene_of(data.occluders)});
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   impl->commands.emplace(std::move(commands));
+  impl->diagonal_m = scene::world_bounds(impl->occluders).diagonal();
+  impl->mean_emission = matrix::mean_emission_of(data);
   LUXEL_TRY(impl->buffers, upload_relight_data(*impl->commands, data));
   LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, impl->occluders));
   impl->tracer.emplace(std::move(tracer));
@@ -258,7 +284,13 @@ Status DeviceRelighter::update(const matrix::RelightLights& lights) {
   if (!lights.direct_at_probes.empty())
     std::memcpy(my.probes_sent.mapped, lights.direct_at_probes.data(),
                 lights.direct_at_probes.size_bytes());
+  if (my.has_many_rays(lights)) {
+    LUXEL_TRY([[maybe_unused]] const double traced,
+              gpu::run_groups(*my.commands, my.direct, my.direct_push(lights),
+                              groups_of(uint32_t(my.data.probe.size())), my.direct_piece));
+  }
   LUXEL_TRY_STATUS(my.commands->run([&](VkCommandBuffer c) {
+    gpu::full_barrier(my.device, c);
     my.light_probes(c, lights);
     my.per_patch(c, RelightStep::patches, lights.background);
     my.bounce(c);

@@ -56,7 +56,7 @@ class BakesOnDevice : public gpu::testing::OnDevice {
     EXPECT_EQ(rays.lit, 1);
     EXPECT_EQ(rays.traced, 1);
     EXPECT_GE(rays.swept, out.sweeps);
-    EXPECT_EQ(rays.forgotten, 1);
+    EXPECT_GE(rays.forgotten, 1);
     return out;
   }
 };

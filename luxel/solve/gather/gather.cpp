@@ -173,6 +173,18 @@ void take_result(Progressive&& light, Gather& out) {
   out.sweeps = light.bounced.sweeps;
 }
 
+/// Has the device forget the scene in the end, however that comes.
+struct DeviceUse {
+  RayDevice* device;
+
+  explicit DeviceUse(RayDevice* used) : device(used) {}
+  DeviceUse(const DeviceUse&) = delete;
+  DeviceUse& operator=(const DeviceUse&) = delete;
+  ~DeviceUse() {
+    if (device) device->forget();
+  }
+};
+
 }  // namespace
 
 Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* layers,
@@ -186,7 +198,8 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
   if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
-  if (stores.device) LUXEL_TRY_STATUS(stores.device->begin(trace_scene(scene, &sides)));
+  const DeviceUse use{scene.elements.size() > 0 ? stores.device : nullptr};
+  if (use.device) LUXEL_TRY_STATUS(use.device->begin(trace_scene(scene, &sides)));
   // 1. Light straight from the lights, with shadow rays.
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));
   // 2. The rays that every element gets, and what they hit.

@@ -52,7 +52,7 @@ struct Solution {
 
 /// Cuts the scene's triangles, looks from each element, exchanges light until it settles, then cuts
 /// on where it varies, and lets all elements of the finished mesh look and exchange light anew.
-/// Errors: settings, cancelled, disk full.
+/// Errors: settings, cancelled, disk full; those of params.device.
 Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
                        const trace::RayTracer& tracer, const HemicubeParams& params,
                        Progress& progress, const Observer& observer = {});

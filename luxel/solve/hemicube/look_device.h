@@ -11,8 +11,8 @@ class LookDevice {
  public:
   virtual ~LookDevice() = default;
 
-  /// Takes a scene, in place of any before; what follows is about this one. Errors: no memory, the
-  /// device is lost.
+  /// Takes a scene, in place of any before; what follows is about this one. It is kept by reference
+  /// until forget(). Errors: no memory, the device is lost.
   virtual Status begin(const scene::Scene& scene) = 0;
 
   /// look(), in the scene of begin(). The device's seconds count as visibility. Errors: those of
@@ -21,6 +21,9 @@ class LookDevice {
   virtual Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
                                    const LookParams& params, const OnView& done,
                                    Progress& progress) = 0;
+
+  /// Gives the memory of the scene back.
+  virtual void forget() = 0;
 };
 
 }  // namespace luxel::hemicube

@@ -7,16 +7,9 @@
 
 #include "luxel/base/vec.h"
 #include "luxel/trace/vulkan/binary_hierarchy.h"
+#include "luxel/trace/vulkan/device_pictures.h"
 
 namespace luxel::trace {
-
-/// A texture in SeeThrough::texels, and how it is looked up.
-struct DevicePicture {
-  uint32_t first = 0;
-  uint32_t width = 0, height = 0;   ///< 0: none, which is 1 everywhere
-  uint32_t wrap_u = 0, wrap_v = 0;  ///< scene::Wrap
-  uint32_t nearest = 0;             ///< 1: not filtered
-};
 
 /// scene::Material without what rays do not notice.
 struct SeeThroughMaterial {

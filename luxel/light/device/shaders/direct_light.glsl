@@ -16,15 +16,6 @@ const uint kMostTriangles = 32;
 // Up to so many punctual lights each one gets its shadow ray; of more, so many are drawn.
 const uint kMostPunctual = 64;
 
-// luxel/base/vec.h [Duff17]
-vec3 to_world(vec3 n, vec3 local) {
-  float sign = (floatBitsToUint(n.z) >> 31) != 0 ? -1.0 : 1.0;
-  float a = -1 / (sign + n.z), b = n.x * n.y * a;
-  vec3 tangent = vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  vec3 bitangent = vec3(b, sign + n.y * n.y * a, -n.y);
-  return tangent * local.x + bitangent * local.y + n * local.z;
-}
-
 // Traces shadow rays at a triangle: `count` points of it that lie above the horizon, or, of one that
 // stands for its neighbours, one at random.
 void aim_at_triangle(TriangleLight light, Source s, uint count, Receiver r, inout Sum sum) {

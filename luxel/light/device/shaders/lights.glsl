@@ -4,6 +4,7 @@
 #include "luxel/light/both_light_group.h"
 #include "luxel/light/both_punctual_light.h"
 #include "luxel/light/both_triangle_light.h"
+#include "luxel/trace/vulkan/shaders/frame.glsl"
 
 struct TriangleLight {
   vec3 a, b, c, normal;
@@ -51,10 +52,8 @@ layout(buffer_reference, scalar) readonly buffer Setup {
   float diagonal_m;  // of the scene
   float rotation_rad;
   int map_width;
-  uint triangle_count, punctual_count, punctual_node_count, bright_count;
+  uint triangle_count, punctual_count, bright_count;
 };
-
-float luminance(vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 LightTriangle triangle_of(TriangleLight light) {
   return LightTriangle(light.a, light.b, light.c, light.normal, light.area_m2, light.two_sided != 0);
@@ -94,9 +93,3 @@ vec2 random_vec2(uvec2 seed) {
 }
 // std::lround() of what is not below 0.
 uint rounded(double x) { return uint(x) + (x - floor(x) >= 0.5 ? 1 : 0); }
-
-// trace::offset_origin()
-vec3 offset_origin(vec3 position, vec3 normal, float diagonal_m) {
-  vec3 size = abs(position);
-  return position + normal * (3.814697265625e-6 * max(max(size.x, max(size.y, size.z)), diagonal_m));
-}

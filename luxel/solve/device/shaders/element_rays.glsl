@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/base/both_directions.h"
 #include "luxel/base/both_sobol.h"
+#include "luxel/trace/vulkan/shaders/frame.glsl"
 
 const uint kCellsPerAxis = 8, kCells = 64;
 
@@ -16,15 +17,6 @@ layout(buffer_reference, scalar) readonly buffer PlainCells {
   uint first_of[kCells + 1];
   uint sample_of[];
 };
-
-// luxel/base/vec.h [Duff17]
-vec3 to_world(vec3 n, vec3 local) {
-  float sign = (floatBitsToUint(n.z) >> 31) != 0 ? -1.0 : 1.0;
-  float a = -1 / (sign + n.z), b = n.x * n.y * a;
-  vec3 tangent = vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  vec3 bitangent = vec3(b, sign + n.y * n.y * a, -n.y);
-  return tangent * local.x + bitangent * local.y + n * local.z;
-}
 
 vec3 ray_direction(Element e, uint sample_number, uvec2 seed) {
   float u = unit_float(reverse_bits(scramble_upwards(sample_number, seed.x)));

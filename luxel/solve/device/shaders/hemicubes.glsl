@@ -113,11 +113,12 @@ vec3 see(uint view, Pixel pixel, vec3 direction, Hit hit) {
   if (setup.per_vertex == 0) {
     add_share(view, node.element[0], pixel.weight);
   } else {
-    uint second = min(uint(at.x * float(pixel.weight)), pixel.weight),
-         third = min(uint(at.y * float(pixel.weight)), pixel.weight - second);
-    add_share(view, node.element[0], pixel.weight - second - third);
-    add_share(view, node.element[1], second);
-    add_share(view, node.element[2], third);
+    // Sums are rounded, not shares: what rounding takes from one corner the next one gets.
+    float whole = float(pixel.weight);
+    uint two = min(uint((at.x + at.y) * whole + 0.5), pixel.weight), one = min(uint(at.x * whole + 0.5), two);
+    add_share(view, node.element[0], pixel.weight - two);
+    add_share(view, node.element[1], one);
+    add_share(view, node.element[2], two - one);
   }
   return (t.flags & kEmissive) != 0 ? t.emission * factor : vec3(0);
 }

@@ -1,5 +1,6 @@
 // Light of punctual lights that move: a shadow ray per place and light, as matrix::live_light().
 #include "luxel/light/both_punctual_light.h"
+#include "luxel/trace/vulkan/shaders/frame.glsl"
 layout(local_size_x = 64) in;
 
 const uint kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
@@ -25,11 +26,6 @@ layout(push_constant, scalar) uniform Push {
   uint first_group;
 };
 
-vec3 offset_origin(vec3 position, vec3 normal) {
-  vec3 size = abs(position);
-  return position + normal * (3.814697265625e-6 * max(max(size.x, max(size.y, size.z)), diagonal_m));
-}
-
 vec3 light_of(PunctualLight l, Place p) {
   vec3 towards = -l.direction;
   float t_max = uintBitsToFloat(0x7f800000u), share = 1;
@@ -45,7 +41,7 @@ vec3 light_of(PunctualLight l, Place p) {
   float cosine = dot(p.normal, towards);
   vec3 arriving = l.intensity * (share * cosine);
   if (!(cosine > 0) || !(max(arriving.x, max(arriving.y, arriving.z)) > 0)) return vec3(0);
-  Ray ray = Ray(offset_origin(p.position, p.normal), towards, 0, t_max);
+  Ray ray = Ray(offset_origin(p.position, p.normal, diagonal_m), towards, 0, t_max);
   return trace(world, ray, true).number == kNoTriangle ? arriving : vec3(0);
 }
 

@@ -106,7 +106,7 @@ layout(buffer_reference, scalar) buffer Setup {
 layout(push_constant, scalar) uniform Push {
   Setup setup;
   uint first, count;  // of what threads or groups take
-  uint unused;
+  uint first_group;   // of this dispatch
   vec3 background;
 };
 
@@ -332,7 +332,7 @@ void advance_patch(uint i) {
 }
 
 void main() {
-  uint lane = gl_LocalInvocationID.x, group = gl_WorkGroupID.x, k = gl_GlobalInvocationID.x;
+  uint lane = gl_LocalInvocationID.x, group = first_group + gl_WorkGroupID.x, k = group * kThreads + lane;
   switch (kStep) {
     case kReceiveFar: receive_far(first + group, lane); return;
     case kReceiveLeaves: receive_leaf(setup.leaves.at[first + group], lane); return;

@@ -1,6 +1,7 @@
 // The soft light around a scene: light::Surroundings, light::soft_radiance().
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/scene/both_environment.h"
+#include "luxel/trace/vulkan/shaders/frame.glsl"
 
 layout(buffer_reference, scalar) readonly buffer MapPixels { vec3 at[]; };
 layout(buffer_reference, scalar) readonly buffer Surroundings {
@@ -11,8 +12,6 @@ layout(buffer_reference, scalar) readonly buffer Surroundings {
   uint unused;
   MapPixels pixels;
 };
-
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
 vec3 soft_radiance(Surroundings around, vec3 direction) {
   if (around.width == 0) return around.background;

@@ -26,8 +26,9 @@ class RayDevice {
  public:
   virtual ~RayDevice() = default;
 
-  /// Takes a scene, in place of any before; what follows is about this one. Errors: it cannot trace
-  /// it (ErrorCode::unsupported), no memory, the device is lost.
+  /// Takes a scene, in place of any before; what follows is about this one. It is kept by reference
+  /// until forget(). Errors: it cannot trace it (ErrorCode::unsupported), no memory, the device is
+  /// lost.
   virtual Status begin(const TraceScene& in) = 0;
 
   /// Whether it knows all that shines in the scene; else direct light is the processor's.

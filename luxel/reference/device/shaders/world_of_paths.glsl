@@ -1,0 +1,174 @@
+// Everything that paths look at: ../path_buffers.cpp has the structs.
+#include "luxel/base/both_directions.h"
+#include "luxel/base/both_sobol.h"
+#include "luxel/trace/vulkan/shaders/frame.glsl"
+
+const float kPi = 3.14159265358979323846;
+#define kInfinity uintBitsToFloat(0x7f800000u)
+
+// A drawn triangle.
+struct PathTriangle {
+  vec3 corner[3];
+  vec3 normal[3];  // of the vertices, of any length
+  vec3 color[3];   // of the vertices
+  vec3 front;      // unit
+  vec2 base[3], metal[3], emission[3];  // in the pictures
+  uint material;
+  uint flags;
+  uint other_side;  // of a sheet: its number; or kNoTriangle
+  float pdf_area;   // with which its points are picked; 0: never
+  float size_m;     // the root of its area
+};
+const uint kBasePlaced = 1, kMetalPlaced = 2, kEmissionPlaced = 4, kCurved = 8, kBends = 16;
+struct PathMaterial {
+  vec3 base_color, emission;
+  float alpha, cutoff, metallic;
+  uint flags;
+  Picture base, metal, emission_picture;
+};
+const uint kDoubleSided = 1, kUnlit = 2, kMasked = 4, kFromBehind = 8;
+const uint kPoint = 0, kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
+struct PathLight {
+  vec3 intensity, position, direction;
+  float range_m, outer_cosine, ramp;  // ramp: between the cosines of both cones
+  float disc_height;                  // 1 - cos(half of the disc's angle)
+  float reach;                        // the sine of half of it
+  uint kind, has_disc;
+};
+layout(buffer_reference, scalar) readonly buffer PathTriangles { PathTriangle at[]; };
+layout(buffer_reference, scalar) readonly buffer PathMaterials { PathMaterial at[]; };
+layout(buffer_reference, scalar) readonly buffer PathLights { PathLight at[]; };
+layout(buffer_reference, scalar) readonly buffer Doubles { double at[]; };
+layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
+layout(buffer_reference, scalar) readonly buffer Floats { float at[]; };
+layout(buffer_reference, scalar) readonly buffer MapPixels { vec3 at[]; };
+
+layout(buffer_reference, scalar) buffer Setup {
+  World world;
+  PathTriangles triangles;
+  PathMaterials materials;
+  Texels texels;
+  Floats linear_of_byte;  // of sRGB
+  Numbers emitters;       // triangles
+  Doubles chance_below;   // of each emitter; one more entry
+  PathLights lights;
+  Doubles row_below, column_below;  // reference::SkySampler
+  MapPixels pixels;
+  vec3 background;
+  float diagonal_m;
+  float rotation_rad;
+  int map_width, map_height;  // 0: no map
+  uint emitter_count, light_count;
+};
+
+// A side of a surface that a ray has met.
+struct Side {
+  uint number;
+  vec2 uv;
+  bool back;
+};
+
+// What has two sides is met on the side that the ray comes from: trace::DeviceRayTracer::hit_of().
+Side side_of(Setup setup, Hit hit) {
+  Side s = Side(hit.number & ~kBackFace, vec2(hit.u, hit.v), (hit.number & kBackFace) != 0);
+  uint other = setup.triangles.at[s.number].other_side;
+  if (s.back && other != kNoTriangle) s = Side(other, s.uv.yx, false);
+  return s;
+}
+
+float largest(vec3 c) { return max(c.x, max(c.y, c.z)); }
+
+vec3 between(vec3 values[3], vec2 uv) { return values[0] * (1 - uv.x - uv.y) + values[1] * uv.x + values[2] * uv.y; }
+
+vec4 linear_texel(Setup setup, Picture p, int x, int y) {
+  uint at = setup.texels.at[p.first + uint(wrapped(y, int(p.height), p.wrap_v)) * p.width +
+                            uint(wrapped(x, int(p.width), p.wrap_u))];
+  return vec4(setup.linear_of_byte.at[at & 255u], setup.linear_of_byte.at[at >> 8 & 255u],
+              setup.linear_of_byte.at[at >> 16 & 255u], float(at >> 24) / 255.0);
+}
+
+// Colours are filtered in linear light. 1 without picture or places.
+vec4 colour_at(Setup setup, Picture p, bool has_places, vec2 places[3], vec2 uv) {
+  if (p.width == 0 || !has_places) return vec4(1);
+  vec2 at = (1 - uv.x - uv.y) * places[0] + uv.x * places[1] + uv.y * places[2];
+  at = mix(clamp(at, vec2(-1e6), vec2(1e6)), vec2(0), bvec2(isnan(at.x) || isinf(at.x), isnan(at.y) || isinf(at.y)));
+  at *= vec2(p.width, p.height);
+  if (p.nearest != 0) return linear_texel(setup, p, int(floor(at.x)), int(floor(at.y)));
+  vec2 low = floor(at - 0.5), f = at - 0.5 - low;
+  ivec2 c = ivec2(low);
+  return mix(mix(linear_texel(setup, p, c.x, c.y), linear_texel(setup, p, c.x + 1, c.y), f.x),
+             mix(linear_texel(setup, p, c.x, c.y + 1), linear_texel(setup, p, c.x + 1, c.y + 1), f.x), f.y);
+}
+
+// scene::base_color_at()
+vec4 base_color_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+  vec4 c = colour_at(setup, m.base, (t.flags & kBasePlaced) != 0, t.base, uv);
+  return vec4(c.xyz * (m.base_color * between(t.color, uv)), c.w * m.alpha);
+}
+
+// scene::reflectance_at(), of what scatters no light through.
+vec3 reflectance_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+  float metal = m.metallic * picture_at(setup.texels, m.metal, (t.flags & kMetalPlaced) != 0, t.metal, uv, 2);
+  return clamp(base_color_at(setup, t, m, uv).xyz * (1 - clamp(metal, 0.0, 1.0)), vec3(0), vec3(0.99));
+}
+
+vec3 emission_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+  if (largest(m.emission) <= 0) return vec3(0);
+  return m.emission * colour_at(setup, m.emission_picture, (t.flags & kEmissionPlaced) != 0, t.emission, uv).xyz;
+}
+
+// scene::passage_at(), of masks alone.
+float coverage_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+  return (m.flags & kMasked) != 0 && base_color_at(setup, t, m, uv).w < m.cutoff ? 0.0 : 1.0;
+}
+
+// reference::Receiver
+struct Place {
+  vec3 position, normal, geometric_normal;
+};
+
+vec3 shading_normal(PathTriangle t, vec2 uv) {
+  vec3 n = between(t.normal, uv);
+  float l = length(n);
+  if (l > 0) n *= 1 / l;
+  float side = dot(n, t.front);
+  if (abs(side) < 1e-3) return t.front;
+  return side < 0 ? -n : n;
+}
+
+// reference::receiver_at()
+Place place_at(PathTriangle t, vec2 uv, bool back) {
+  vec3 at = between(t.corner, uv);
+  if ((t.flags & kCurved) == 0) return Place(at, back ? -t.front : t.front, back ? -t.front : t.front);
+  vec3 n = shading_normal(t, uv);
+  if (back) return Place(at, -n, -t.front);
+  if ((t.flags & kBends) == 0) return Place(at, n, t.front);
+  float weights[3] = float[3](1 - uv.x - uv.y, uv.x, uv.y);
+  vec3 lift = vec3(0);
+  for (int k = 0; k < 3; ++k) {
+    vec3 own = normalize(t.normal[k]);
+    lift += own * (weights[k] * max(0.0, dot(t.corner[k] - at, own)));
+  }
+  // transport::smooth_point() has the reasons for these numbers.
+  float limit = 0.25 * t.size_m, height = length(lift);
+  if (height > limit) lift *= limit / height;
+  return Place(at + lift, n, length(lift) > 1e-4 * t.size_m ? n : t.front);
+}
+
+vec3 origin_of(Setup setup, Place p) { return offset_origin(p.position, p.geometric_normal, setup.diagonal_m); }
+
+// A RandomStream.
+struct Random {
+  uvec2 seed;
+  uint index;
+};
+float next_float(inout Random r) { return unit_float(hash64(r.seed, uvec2(r.index++, 0)).y); }
+vec2 next_vec2(inout Random r) {
+  uvec2 bits = hash64(r.seed, uvec2(r.index++, 0));
+  return vec2(unit_float(bits.y), unit_float(bits.x));
+}
+// [0, 1) with 48 bits.
+double next_fine(inout Random r) {
+  vec2 u = next_vec2(r);
+  return double(u.x) + double(u.y) * double(5.9604644775390625e-8);
+}

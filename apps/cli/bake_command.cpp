@@ -9,6 +9,7 @@
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
+#include "luxel/reference/device/device_path_tracer.h"
 #include "luxel/solve/device/device_look.h"
 #include "luxel/solve/device/gather_device.h"
 
@@ -87,6 +88,7 @@ struct OpenDevice {
   std::unique_ptr<gpu::Device> device;
   std::unique_ptr<gather::RayDevice> rays;
   std::unique_ptr<hemicube::LookDevice> look;
+  std::unique_ptr<reference::PathDevice> paths;
   pipeline::BakeDevice for_bake;
 };
 
@@ -101,8 +103,10 @@ Result<std::unique_ptr<OpenDevice>> open_device(const BakeOptions& options) {
   out->device = std::move(chosen.device);
   out->rays = device::gather_device(*out->device);
   out->look = device::look_device(*out->device);
+  out->paths = reference::path_device(*out->device);
   out->for_bake = {.rays = out->rays.get(),
                    .look = out->look.get(),
+                   .paths = out->paths.get(),
                    .name = out->device->name,
                    .is_optional = choice.kind == gpu::DeviceChoice::Kind::any};
   return out;
@@ -137,7 +141,8 @@ void register_bake(CLI::App& app, Action& action) {
                          pipeline::solvers_with("--plan") + ")");
   bake->add_option("--device", options->device,
                    "What works out gather's first direct light and first round of rays, and adds "
-                   "up what rays bring; with --solver hemicube, what looks through hemicubes: "
+                   "up what rays bring; with --solver hemicube, what looks through hemicubes; with "
+                   "--solver reference, what follows paths: "
                    "cpu; gpu, a graphics card; gpu:N or gpu:TEXT, the device of that number or "
                    "with that text in its name (luxel info --devices); auto, a graphics card where "
                    "there is one that can")

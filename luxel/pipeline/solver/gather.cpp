@@ -196,8 +196,8 @@ Result<gather::Gather> run_on(const BakeDevice& on, GatherCall call, Progress& p
 /// gather() on the device, if there is one; where that is optional and fails, all of it on the
 /// processor, with a warning. `device` gets the name of that which had the rays. Errors: those of
 /// gather().
-Result<gather::Gather> run_on_any(const BakeDevice* on, GatherCall call, std::string& device,
-                                  std::vector<std::string>& warnings, Progress& progress) {
+Result<gather::Gather> gather_on_any(const BakeDevice* on, GatherCall call, std::string& device,
+                                     std::vector<std::string>& warnings, Progress& progress) {
   if (!on) return run(call, progress);
   const auto start = Clock::now();
   auto out = run_on(*on, call, progress);
@@ -252,7 +252,7 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
                                                .on_bounce = observer.on_bounce,
                                                .on_traced = observer.on_traced}};
   std::string device;
-  LUXEL_TRY(gather::Gather result, run_on_any(stores.device, call, device, warnings, progress));
+  LUXEL_TRY(gather::Gather result, gather_on_any(stores.device, call, device, warnings, progress));
   const light::LightLayers all_layers = layers;
   const gather::SourceLight sources = std::move(result.sources);
   TexelLight out = light_of(result, layers);

@@ -60,27 +60,6 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
   return out;
 }
 
-/// hemicube::solve() on the device, if there is one; where that is optional and fails, on the
-/// processor, with a warning. `device` gets the name of that which has looked. Errors: those of
-/// hemicube::solve().
-Result<hemicube::Solution> solve_on_any(const light::TexelScene& in, const BakeDevice* on,
-                                        hemicube::HemicubeParams params,
-                                        const hemicube::Observer& observer, std::string& device,
-                                        std::vector<std::string>& warnings, Progress& progress) {
-  const auto run = [&] {
-    return hemicube::solve(in.scene, in.lights, in.tracer, params, progress, observer);
-  };
-  if (!on) return run();
-  LUXEL_CHECK(on->look);
-  params.device = on->look;
-  auto out = run();
-  if (out) device = on->name;
-  if (out || !may_go_on_without(*on, out.error())) return out;
-  warnings.push_back(warning_without(*on, out.error()));
-  params.device = nullptr;
-  return run();
-}
-
 Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSettings& settings,
                                   const SolveStores& stores, const SolveObserver& observer,
                                   Progress& progress) {
@@ -90,16 +69,18 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
             memory_to_spare(in, settings, bytes_of_light(in, settings), pixels + kMinHitBytes));
   params.row_memory_bytes = memory - pixels;
   params.scratch_folder = nearest_folder(settings.output);
-  std::string device;
-  std::vector<std::string> warnings;
-  LUXEL_TRY(const hemicube::Solution solution,
-            solve_on_any(in, stores.device, params,
-                         observer.hemicube ? *observer.hemicube : hemicube::Observer{}, device,
-                         warnings, progress));
+  const auto solve = [&](const BakeDevice* on) {
+    LUXEL_CHECK(!on || on->look);
+    params.device = on ? on->look : nullptr;
+    return hemicube::solve(in.scene, in.lights, in.tracer, params, progress,
+                           observer.hemicube ? *observer.hemicube : hemicube::Observer{});
+  };
+  TookPart part;
+  LUXEL_TRY(const hemicube::Solution solution, run_on_any(stores.device, solve, part));
   const float cover_size_m =
       transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
   TexelLight out = texel_light_of(in, solution, cover_size_m);
-  out.device = std::move(device), out.warnings = std::move(warnings);
+  out.device = std::move(part.device), out.warnings = std::move(part.warnings);
   LUXEL_TRY(out.relative_error,
             measured_error(in, out,
                            {settings.bounces, settings.seed,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/pipeline/texels/solve_input.h"
@@ -14,5 +15,23 @@ bool may_go_on_without(const BakeDevice& on, const Error& error);
 
 /// The warning that says so.
 std::string warning_without(const BakeDevice& on, const Error& error);
+
+/// What took part in a bake, and what there is to say of it.
+struct TookPart {
+  std::string device;  ///< empty: the processor alone
+  std::vector<std::string> warnings;
+};
+
+/// run(on), a Result, where there is a device; run(nullptr), on the processor, where there is none,
+/// or an optional one has failed.
+template <class Run>
+auto run_on_any(const BakeDevice* on, const Run& run, TookPart& part) {
+  auto out = run(on);
+  if (!on) return out;
+  if (out) part.device = on->name;
+  if (out || !may_go_on_without(*on, out.error())) return out;
+  part.warnings.push_back(warning_without(*on, out.error()));
+  return run(static_cast<const BakeDevice*>(nullptr));
+}
 
 }  // namespace luxel::pipeline

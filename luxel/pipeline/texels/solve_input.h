@@ -21,6 +21,9 @@ class RayDevice;
 namespace luxel::hemicube {
 class LookDevice;
 }
+namespace luxel::reference {
+class PathDevice;
+}
 
 namespace luxel::pipeline {
 
@@ -28,9 +31,10 @@ class BakeCache;
 
 /// A graphics device for what solvers leave to one.
 struct BakeDevice {
-  gather::RayDevice* rays = nullptr;     ///< for gather; not null
-  hemicube::LookDevice* look = nullptr;  ///< for hemicube; not null
-  std::string name;                      ///< what bake.json calls it
+  gather::RayDevice* rays = nullptr;       ///< for gather; not null
+  hemicube::LookDevice* look = nullptr;    ///< for hemicube; not null
+  reference::PathDevice* paths = nullptr;  ///< for reference; not null
+  std::string name;                        ///< what bake.json calls it
   /// Where the device cannot have the bake, or fails, the processor has it, with a warning.
   bool is_optional = false;
 };

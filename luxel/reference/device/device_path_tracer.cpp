@@ -303,4 +303,27 @@ Result<Picture> DevicePathTracer::radiance(const scene::Camera& camera, int widt
   return out;
 }
 
+namespace {
+
+class DevicePaths final : public PathDevice {
+ public:
+  explicit DevicePaths(const gpu::Device& device) : device_(device) {}
+
+  Result<TexelPaths> irradiance(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                const Receivers& receivers, const PathParams& params,
+                                Progress& progress) override {
+    LUXEL_TRY(DevicePathTracer paths, DevicePathTracer::make(device_, scene, tracer));
+    return paths.irradiance(receivers, params, progress);
+  }
+
+ private:
+  const gpu::Device& device_;
+};
+
+}  // namespace
+
+std::unique_ptr<PathDevice> path_device(const gpu::Device& device) {
+  return std::make_unique<DevicePaths>(device);
+}
+
 }  // namespace luxel::reference

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "luxel/gpu/device.h"
-#include "luxel/reference/path_tracer.h"
+#include "luxel/reference/path_device.h"
 
 namespace luxel::reference {
 
@@ -37,5 +37,8 @@ class DevicePathTracer {
   explicit DevicePathTracer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// `device` is kept by reference and must outlive it.
+std::unique_ptr<PathDevice> path_device(const gpu::Device& device);
 
 }  // namespace luxel::reference

@@ -1,0 +1,21 @@
+// What a graphics device does of path tracing; luxel/reference/device/ has one. The path tracer
+// itself knows no graphics.
+#pragma once
+
+#include "luxel/reference/path_tracer.h"
+
+namespace luxel::reference {
+
+/// Follows paths in place of the processor.
+class PathDevice {
+ public:
+  virtual ~PathDevice() = default;
+
+  /// irradiance_by_paths(). Errors: cancelled, something in the scene that the device does not know
+  /// (ErrorCode::unsupported), no memory, the device is lost.
+  virtual Result<TexelPaths> irradiance(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                        const Receivers& receivers, const PathParams& params,
+                                        Progress& progress) = 0;
+};
+
+}  // namespace luxel::reference

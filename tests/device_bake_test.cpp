@@ -90,6 +90,23 @@ TEST_F(BakeOnDevice, ByPathsIsThatOfTheProcessor) {
   EXPECT_EQ(c.code, 0) << c.out << c.err;
 }
 
+TEST_F(BakeOnDevice, PicturesAreThoseOfTheProcessor) {
+  const std::string draw = "render " + kBoxToBake + " --technique path --size 24x18 --samples 4 ";
+  const std::string cpu = (scratch_.path / "cpu.exr").string(),
+                    gpu = (scratch_.path / "gpu.exr").string();
+  ASSERT_EQ(luxel(draw + "--quiet -o " + cpu).code, 0);
+  const CommandResult r = luxel(draw + "--json -o " + gpu + " " + option_);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(nlohmann::json::parse(r.out)["device"], name_);
+  const CommandResult c = luxel("compare " + cpu + " " + gpu + " --max-rmse-over-mean 0.05 --json");
+  EXPECT_EQ(c.code, 0) << c.out << c.err;
+  const CommandResult other =
+      luxel("render " + kBoxToBake + " --technique normals -o " + gpu + " " + option_);
+  EXPECT_EQ(other.code, 1) << other.err;
+  EXPECT_THAT(other.err,
+              HasSubstr("--device is for --technique path and radiosity, not for normals"));
+}
+
 TEST_F(BakeOnDevice, GivesTheSameBitsEachTime) {
   ASSERT_EQ(bake("once", option_ + " --quiet").code, 0);
   ASSERT_EQ(bake("again", option_ + " --quiet --threads 1").code, 0);

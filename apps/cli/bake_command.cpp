@@ -2,16 +2,13 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/device_option.h"
 #include "luxel/arguments/bake_options.h"
-#include "luxel/gpu/device_choice.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
-#include "luxel/reference/device/device_path_tracer.h"
-#include "luxel/solve/device/device_look.h"
-#include "luxel/solve/device/gather_device.h"
 
 namespace luxel::cli {
 namespace {
@@ -83,42 +80,13 @@ int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings)
   return run_and_print(options.common, work, print_plan);
 }
 
-/// An open device and what it does for solvers.
-struct OpenDevice {
-  std::unique_ptr<gpu::Device> device;
-  std::unique_ptr<gather::RayDevice> rays;
-  std::unique_ptr<hemicube::LookDevice> look;
-  std::unique_ptr<reference::PathDevice> paths;
-  pipeline::BakeDevice for_bake;
-};
-
-/// What --device asks for; null: the processor. Errors: no such device.
-Result<std::unique_ptr<OpenDevice>> open_device(const BakeOptions& options) {
-  LUXEL_TRY(const gpu::DeviceChoice choice, gpu::parse_device(options.device));
-  LUXEL_TRY(gpu::ChosenDevice chosen, gpu::open_chosen(choice));
-  if (!chosen.why_none.empty())
-    print_warnings({"baked on the processor: " + chosen.why_none}, options.common);
-  if (!chosen.device) return nullptr;
-  auto out = std::make_unique<OpenDevice>();
-  out->device = std::move(chosen.device);
-  out->rays = device::gather_device(*out->device);
-  out->look = device::look_device(*out->device);
-  out->paths = reference::path_device(*out->device);
-  out->for_bake = {.rays = out->rays.get(),
-                   .look = out->look.get(),
-                   .paths = out->paths.get(),
-                   .name = out->device->name,
-                   .is_optional = choice.kind == gpu::DeviceChoice::Kind::any};
-  return out;
-}
-
 int run_bake(const BakeOptions& options) {
   const auto settings = settings_of(options.choice);
   if (!settings) return report(settings.error(), options.common);
   if (options.choice.plan) return run_plan(options, *settings);
-  const auto device = open_device(options);
+  const auto device = open_device(options.device, options.common);
   if (!device) return report(device.error(), options.common);
-  const pipeline::BakeDevice* for_bake = *device ? &(*device)->for_bake : nullptr;
+  const pipeline::BakeDevice* for_bake = *device ? &(*device)->for_pipeline : nullptr;
   return run_and_print(
       options.common,
       [&](Progress& progress) { return pipeline::bake(*settings, progress, for_bake); },
@@ -139,15 +107,10 @@ void register_bake(CLI::App& app, Action& action) {
       bake->add_flag("--plan", options->choice.plan,
                      "Do not bake: estimate time, memory and rays from a short trial (for " +
                          pipeline::solvers_with("--plan") + ")");
-  bake->add_option("--device", options->device,
-                   "What works out gather's first direct light and first round of rays, and adds "
-                   "up what rays bring; with --solver hemicube, what looks through hemicubes; with "
-                   "--solver reference, what follows paths: "
-                   "cpu; gpu, a graphics card; gpu:N or gpu:TEXT, the device of that number or "
-                   "with that text in its name (luxel info --devices); auto, a graphics card where "
-                   "there is one that can")
-      ->type_name("cpu|gpu|gpu:NAME|auto")
-      ->capture_default_str()
+  add_device(*bake, options->device,
+             "What works out gather's first direct light and first round of rays, and adds up what "
+             "rays bring; with --solver hemicube, what looks through hemicubes; with --solver "
+             "reference, what follows paths")
       ->excludes(plan);
   add_bake_table(*bake, options->choice.given);
   add_common(*bake, options->common);

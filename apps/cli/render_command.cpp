@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/device_option.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/render/overlays.h"
 #include "luxel/pipeline/render/render.h"
@@ -14,7 +15,7 @@ namespace {
 struct RenderOptions {
   Common common;
   Given reading, outside, hemicube, hierarchical;
-  std::string size, eye, look_at, bounces, exposure, tone_map, overlay;
+  std::string size, eye, look_at, bounces, exposure, tone_map, overlay, device = "cpu";
   pipeline::RenderSettings settings;
 };
 
@@ -70,6 +71,7 @@ void print_json(const pipeline::RenderSettings& s, const pipeline::Rendered& ren
                       {"width", rendered.width},
                       {"height", rendered.height}};
   if (s.output.extension() == ".png") json["exposure"] = rendered.exposure;
+  if (!rendered.device.empty()) json["device"] = rendered.device;
   if (rendered.rays > 0)
     json["rays"] = rendered.rays, json["relative_error"] = rendered.relative_error;
   if (!rendered.tiles.empty()) json["tiles"] = rendered.tiles;
@@ -91,10 +93,13 @@ void print_report(const pipeline::RenderSettings& s, const pipeline::Rendered& r
 int run_render(const RenderOptions& options) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error(), options.common);
+  const auto device = open_device(options.device, options.common);
+  if (!device) return report(device.error(), options.common);
+  const pipeline::BakeDevice* for_render = *device ? &(*device)->for_pipeline : nullptr;
   pipeline::Rendered rendered;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
-    LUXEL_TRY(rendered, pipeline::render(*settings, progress));
+    LUXEL_TRY(rendered, pipeline::render(*settings, progress, for_render));
     return {};
   });
   if (!done) return report(done.error(), options.common);
@@ -165,6 +170,8 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
   render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)")
       ->check(whole_number());
+  add_device(*render, options->device,
+             "What follows paths, or looks through hemicubes (path, radiosity)");
   add_options(*render, pipeline::hemicube_options(), {}, options->hemicube,
               pipeline::kHemicubeHeading);
   add_options(*render, pipeline::hierarchical_options(), {}, options->hierarchical,

@@ -1,7 +1,7 @@
 // What lets one text be C++ and GLSL: formulas that the processor and a graphics device share stand
 // once, in files named both_*.h. In C++ they lie in luxel::both. The rules of such a text:
-// functions begin with BOTH, types are uint, int, float, double, vec2, vec3 and dvec3, made by
-// vec2_of(), vec3_of() and to_double(); DOUBLE(x) is a number in double precision, and INOUT(type)
+// functions begin with BOTH, types are uint, int, float, double, vec2 and vec3, made by vec2_of()
+// and vec3_of(); DOUBLE(x) is a number in double precision, and INOUT(type)
 // a parameter that the function changes. normalize() is unit_or_zero() there, because GLSL's has no
 // answer for the zero vector.
 #ifndef LUXEL_BASE_BOTH_LANGUAGE_H
@@ -16,7 +16,6 @@
 #define DOUBLE(x) double(x)
 #define vec2_of vec2
 #define vec3_of vec3
-#define to_double dvec3
 vec3 unit_or_zero(vec3 v) {
   float l = length(v);
   return l > 0 ? v * (1 / l) : vec3(0);
@@ -27,7 +26,6 @@ vec3 unit_or_zero(vec3 v) {
 #include <cstdint>
 
 #include "luxel/base/vec.h"
-#include "luxel/base/vec_double.h"
 
 #define BOTH inline
 #define BOTH_BEGIN        \
@@ -35,7 +33,6 @@ vec3 unit_or_zero(vec3 v) {
   using uint = uint32_t;  \
   using vec2 = Vec2;      \
   using vec3 = Vec3;      \
-  using dvec3 = DVec3;    \
   using std::abs;         \
   using std::clamp;       \
   using std::floor;       \

@@ -16,6 +16,11 @@ class PathDevice {
   virtual Result<TexelPaths> irradiance(const scene::Scene& scene, const trace::RayTracer& tracer,
                                         const Receivers& receivers, const PathParams& params,
                                         Progress& progress) = 0;
+
+  /// radiance_by_paths(). Errors: as above.
+  virtual Result<Picture> radiance(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                   const scene::Camera& camera, int width, int height,
+                                   const PathParams& params, Progress& progress) = 0;
 };
 
 }  // namespace luxel::reference

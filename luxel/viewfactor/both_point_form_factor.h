@@ -3,6 +3,14 @@
 #ifndef LUXEL_VIEWFACTOR_BOTH_POINT_FORM_FACTOR_H
 #define LUXEL_VIEWFACTOR_BOTH_POINT_FORM_FACTOR_H
 #include "luxel/base/both_language.h"
+#ifdef VULKAN
+#define to_double dvec3
+#else
+#include "luxel/base/vec_double.h"
+namespace luxel::both {
+using dvec3 = DVec3;
+}
+#endif
 BOTH_BEGIN
 
 // atan2(sine, cosine) where the sine is above 0, off by less than 4e-16 of it: three ranges, and

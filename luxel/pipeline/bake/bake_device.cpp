@@ -29,7 +29,7 @@ Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepe
   if (!keepers.device->is_optional)
     return fail(ErrorCode::bad_setting, "{}; leave it or --device out", why);
   warnings.push_back(
-      fmt::format("baked on the processor, not on {}: {}", keepers.device->name, why));
+      fmt::format("done by the processor, not by {}: {}", keepers.device->name, why));
   Keepers out = keepers;
   out.device = nullptr;
   return out;

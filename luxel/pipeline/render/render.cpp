@@ -115,9 +115,13 @@ Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const Rende
 
 }  // namespace
 
-Result<Rendered> render(const RenderSettings& s, Progress& progress) {
+Result<Rendered> render(const RenderSettings& s, Progress& progress, const BakeDevice* device) {
   LUXEL_TRY_STATUS(check(s));
   const Technique* technique = find_technique(s.technique);  // none: all
+  if (device && !device->is_optional && technique && !technique->has_device)
+    return fail(ErrorCode::bad_setting,
+                "--device is for --technique path and radiosity, not for {}; leave it out",
+                s.technique);
   progress.begin("import", 0);
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   Rendered out;
@@ -136,7 +140,7 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
                                                        .fov_deg = s.fov_deg,
                                                        .aspect = float(s.width) / float(s.height)},
                                                       imported.scene, tracer, s.scene.string()));
-  const Subject subject{imported.scene, tracer, camera, unit};
+  const Subject subject{imported.scene, tracer, camera, unit, device};
   LUXEL_TRY(const std::vector<std::byte> bytes,
             technique ? one_picture(*technique, subject, s, out, progress)
                       : contact_sheet(subject, s, out, progress));

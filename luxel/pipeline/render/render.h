@@ -16,6 +16,7 @@
 #include "luxel/pipeline/settings/settings.h"
 #include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/pipeline/solver/hierarchical.h"
+#include "luxel/pipeline/texels/solve_input.h"
 
 namespace luxel::pipeline {
 
@@ -58,11 +59,15 @@ struct Rendered {
       0;  ///< path: root mean square of the pixels' standard errors over the mean
   std::vector<std::string> tiles;  ///< of a contact sheet: the techniques, in reading order
   std::vector<std::string> warnings;
+  std::string device;                  ///< BakeDevice::name, if it took part
   std::vector<display::Line> overlay;  ///< to be drawn over the picture
 };
 
-/// Errors: settings out of range or without meaning for the technique, no such camera, a folder
-/// without a bake, a lightmap that does not fit the scene.
-Result<Rendered> render(const RenderSettings& settings, Progress& progress);
+/// `device` takes part in techniques that leave something to one; null: the processor alone.
+/// Errors: settings out of range or without meaning for the technique, a device too, unless it is
+/// optional; no such camera, a folder without a bake, a lightmap that does not fit the scene; those
+/// of the device.
+Result<Rendered> render(const RenderSettings& settings, Progress& progress,
+                        const BakeDevice* device = nullptr);
 
 }  // namespace luxel::pipeline

@@ -7,7 +7,8 @@
 #include "luxel/display/normals_view.h"
 #include "luxel/pipeline/render/draw_bake.h"
 #include "luxel/pipeline/render/draw_hierarchical.h"
-#include "luxel/reference/path_tracer.h"
+#include "luxel/pipeline/solver/on_device.h"
+#include "luxel/reference/path_device.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -42,18 +43,21 @@ Result<image::Image> draw_normals(const Subject& subject, const RenderSettings& 
 
 /// The hemicube solver's own answer, without a lightmap in between.
 Result<image::Image> draw_radiosity(const Subject& subject, const RenderSettings& settings,
-                                    Rendered&, Progress& progress) {
-  hemicube::HemicubeParams solve = settings.hemicube.value_or(hemicube::HemicubeParams{});
-  solve.bounces = settings.bounces.value_or(solve.bounces);
-  LUXEL_TRY(const hemicube::Solution solution,
-            hemicube::solve(subject.scene, light::collect_lights(subject.scene), subject.tracer,
-                            solve, progress));
-  display::DrawParams params;
-  params.width = settings.width, params.height = settings.height;
+                                    Rendered& out, Progress& progress) {
+  hemicube::HemicubeParams params = settings.hemicube.value_or(hemicube::HemicubeParams{});
+  params.bounces = settings.bounces.value_or(params.bounces);
+  const light::Lights lights = light::collect_lights(subject.scene);
+  const auto solve = [&](const BakeDevice* on) {
+    params.device = on ? on->look : nullptr;
+    return hemicube::solve(subject.scene, lights, subject.tracer, params, progress);
+  };
+  LUXEL_TRY(const hemicube::Solution solution, run_on_any(subject.device, solve, out));
+  display::DrawParams draw;
+  draw.width = settings.width, draw.height = settings.height;
   const auto irradiance = [&](const scene::SurfacePoint& p) {
     return hemicube::irradiance_at(solution.field, p);
   };
-  return display::draw(subject.scene, subject.tracer, subject.camera, irradiance, params, progress);
+  return display::draw(subject.scene, subject.tracer, subject.camera, irradiance, draw, progress);
 }
 
 Result<image::Image> draw_paths(const Subject& subject, const RenderSettings& s, Rendered& out,
@@ -61,9 +65,13 @@ Result<image::Image> draw_paths(const Subject& subject, const RenderSettings& s,
   reference::PathParams params;
   params.samples = s.samples.value_or(kDefaultPathSamples);
   params.bounces = s.bounces.value_or(-1), params.seed = s.seed.value_or(1);
-  LUXEL_TRY(reference::Picture picture,
-            reference::radiance_by_paths(subject.scene, subject.tracer, subject.camera, s.width,
-                                         s.height, params, progress));
+  const auto follow = [&](const BakeDevice* on) {
+    return on ? on->paths->radiance(subject.scene, subject.tracer, subject.camera, s.width,
+                                    s.height, params, progress)
+              : reference::radiance_by_paths(subject.scene, subject.tracer, subject.camera, s.width,
+                                             s.height, params, progress);
+  };
+  LUXEL_TRY(reference::Picture picture, run_on_any(subject.device, follow, out));
   out.rays = picture.rays, out.relative_error = picture.relative_error;
   return std::move(picture.radiance);
 }
@@ -122,7 +130,8 @@ constexpr std::array kTechniques{
               .draw = draw_radiosity,
               .counts_bounces = true,
               .has_elements = true,
-              .has_lights = true},
+              .has_lights = true,
+              .has_device = true},
     hierarchical("flat", "hierarchical radiosity: one value per element", draw_flat),
     hierarchical("gouraud", "exact light at elements' corners, linear between", draw_gouraud),
     hierarchical("gouraud-disc", "the same, cut along the edges of shadows", draw_gouraud_disc),
@@ -159,7 +168,8 @@ constexpr std::array kTechniques{
               .draw = draw_paths,
               .traces_paths = true,
               .counts_bounces = true,
-              .has_lights = true},
+              .has_lights = true,
+              .has_device = true},
 };
 
 }  // namespace

@@ -21,7 +21,8 @@ struct Subject {
   const scene::Scene& scene;  ///< with light from outside
   const trace::RayTracer& tracer;
   const scene::Camera& camera;
-  LightUnit unit{};  ///< of its irradiance
+  LightUnit unit{};                    ///< of its irradiance
+  const BakeDevice* device = nullptr;  ///< for techniques that leave something to one
 };
 
 /// One picture, 4 channels: radiance, or colours of a screen (linear, [0, 1]); A = share of the
@@ -40,6 +41,7 @@ struct Technique {
   bool has_elements = false;    ///< --elements, --hemicube, ...
   bool has_links = false;       ///< --eps, --min-area, ...
   bool has_lights = false;      ///< --sun
+  bool has_device = false;      ///< leaves something to a device: --device
   bool on_sheet = true;         ///< one of a contact sheet's pictures
   /// A screen's picture of what are values, not light nor colours; null: they are no values.
   image::Image8 (*show)(const Subject&, const image::Image&) = nullptr;

@@ -9,7 +9,7 @@ bool may_go_on_without(const BakeDevice& on, const Error& error) {
 }
 
 std::string warning_without(const BakeDevice& on, const Error& error) {
-  return fmt::format("baked on the processor, not on {}: {}", on.name, error.message);
+  return fmt::format("done by the processor, not by {}: {}", on.name, error.message);
 }
 
 }  // namespace luxel::pipeline

@@ -23,9 +23,9 @@ struct TookPart {
 };
 
 /// run(on), a Result, where there is a device; run(nullptr), on the processor, where there is none,
-/// or an optional one has failed.
-template <class Run>
-auto run_on_any(const BakeDevice* on, const Run& run, TookPart& part) {
+/// or an optional one has failed. `part`: a TookPart, or what has its members.
+template <class Run, class Part>
+auto run_on_any(const BakeDevice* on, const Run& run, Part& part) {
   auto out = run(on);
   if (!on) return out;
   if (out) part.device = on->name;

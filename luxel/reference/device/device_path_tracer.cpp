@@ -316,6 +316,13 @@ class DevicePaths final : public PathDevice {
     return paths.irradiance(receivers, params, progress);
   }
 
+  Result<Picture> radiance(const scene::Scene& scene, const trace::RayTracer& tracer,
+                           const scene::Camera& camera, int width, int height,
+                           const PathParams& params, Progress& progress) override {
+    LUXEL_TRY(DevicePathTracer paths, DevicePathTracer::make(device_, scene, tracer));
+    return paths.radiance(camera, width, height, params, progress);
+  }
+
  private:
   const gpu::Device& device_;
 };

@@ -1,9 +1,9 @@
 // What lets one text be C++ and GLSL: formulas that the processor and a graphics device share stand
 // once, in files named both_*.h. In C++ they lie in luxel::both. The rules of such a text:
-// functions begin with BOTH, types are uint, int, float, double, vec2 and vec3, made by vec2_of()
-// and vec3_of(); DOUBLE(x) is a number in double precision, and INOUT(type)
-// a parameter that the function changes. normalize() is unit_or_zero() there, because GLSL's has no
-// answer for the zero vector.
+// functions begin with BOTH. Types are uint, int, float, double, vec2 and vec3, made by vec2_of()
+// and vec3_of(). DOUBLE(x) is a number in double precision, and INOUT(type) a parameter that the
+// function changes. unit_or_zero() stands for normalize(), because GLSL's has no answer for the
+// zero vector.
 #ifndef LUXEL_BASE_BOTH_LANGUAGE_H
 #define LUXEL_BASE_BOTH_LANGUAGE_H
 

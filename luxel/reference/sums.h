@@ -10,8 +10,8 @@
 
 namespace luxel::reference {
 
-/// Of colours and of their luminance, with squares. In double, which adds up 2^29 floats of one
-/// size without a rounding.
+/// Sums of colours and of their luminance, with squares. In double, which adds up 2^29 floats of
+/// one size without a rounding.
 struct Sums {
   double r = 0, g = 0, b = 0, l = 0;
   double r2 = 0, g2 = 0, b2 = 0, l2 = 0;

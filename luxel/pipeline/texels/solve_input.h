@@ -29,11 +29,11 @@ namespace luxel::pipeline {
 
 class BakeCache;
 
-/// A graphics device for what solvers leave to one.
+/// A graphics device. What the bake's solver asks is not null.
 struct BakeDevice {
-  gather::RayDevice* rays = nullptr;       ///< for gather; not null
-  hemicube::LookDevice* look = nullptr;    ///< for hemicube; not null
-  reference::PathDevice* paths = nullptr;  ///< for reference; not null
+  gather::RayDevice* rays = nullptr;       ///< for gather
+  hemicube::LookDevice* look = nullptr;    ///< for hemicube
+  reference::PathDevice* paths = nullptr;  ///< for reference
   std::string name;                        ///< what bake.json calls it
   /// Where the device cannot have the bake, or fails, the processor has it, with a warning.
   bool is_optional = false;

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <functional>
+#include <ranges>
 
 #include "luxel/gpu/buffer.h"
 
@@ -64,5 +65,16 @@ Status copy_bytes(Commands& commands, const Buffer& from, const Buffer& to, VkDe
 /// the processor writes. Not empty. Errors: no memory, the device is lost.
 Result<Buffer> uploaded(Commands& commands, std::span<const std::byte> bytes,
                         std::string_view what);
+
+/// uploaded() for values of which there may be none: the buffer holds a Value{} then, because a
+/// buffer is never empty. Errors: no memory, the device is lost.
+template <std::ranges::contiguous_range Values>
+Result<Buffer> uploaded_or_one(Commands& commands, const Values& values, std::string_view what) {
+  using Value = std::ranges::range_value_t<Values>;
+  const Value none{};
+  std::span<const Value> sent = values;
+  if (sent.empty()) sent = {&none, 1};
+  return uploaded(commands, std::as_bytes(sent), what);
+}
 
 }  // namespace luxel::gpu

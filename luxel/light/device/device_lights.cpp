@@ -63,9 +63,7 @@ DevicePunctualLight device_light(const scene::PunctualLight& light) {
 
 template <class T>
 Result<gpu::Buffer> uploaded(gpu::Commands& commands, std::span<const T> values) {
-  static constexpr T kNone{};  // a buffer is never empty
-  if (values.empty()) values = {&kNone, 1};
-  return gpu::uploaded(commands, std::as_bytes(values), "the buffer of lights");
+  return gpu::uploaded_or_one(commands, values, "the buffer of lights");
 }
 
 template <class To, class From>

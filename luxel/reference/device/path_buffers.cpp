@@ -64,9 +64,7 @@ static_assert(sizeof(PathSetup) == 160);
 
 template <class T>
 Result<gpu::Buffer> uploaded(gpu::Commands& commands, std::span<const T> values) {
-  static constexpr T kNone{};  // a buffer is never empty
-  if (values.empty()) values = {&kNone, 1};
-  return gpu::uploaded(commands, std::as_bytes(values), "the buffer of what paths look at");
+  return gpu::uploaded_or_one(commands, values, "the buffer of what paths look at");
 }
 
 /// Whether vertex normals bend the surface over the triangle: transport::smooth_point().

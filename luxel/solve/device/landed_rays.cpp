@@ -72,14 +72,6 @@ struct Round {
   bool is_dark_around() const { return light.size == 0; }
 };
 
-template <class T>
-Result<gpu::Buffer> uploaded(gpu::Commands& commands, std::span<const T> values,
-                             std::string_view what) {
-  static constexpr T kNone{};  // a buffer is never empty
-  if (values.empty()) values = {&kNone, 1};
-  return gpu::uploaded(commands, std::as_bytes(values), what);
-}
-
 /// The first `count` values of a buffer.
 template <class T>
 Result<std::vector<T>> downloaded(gpu::Commands& commands, const gpu::Buffer& from, size_t count) {
@@ -115,10 +107,11 @@ Status prepare(const gather::SceneOfRays& rays, Round& round) {
   gpu::Commands& commands = round.scene.commands;
   LUXEL_TRY(round.from, element_buffers(commands, in.elements, rays.diagonal_m(), round.samples));
   const std::vector<Landing> landings = landings_of(rays.rays());
-  LUXEL_TRY(round.landings, uploaded(commands, std::span(landings), "the buffer of the lightmap"));
+  LUXEL_TRY(round.landings, gpu::uploaded_or_one(commands, landings, "the buffer of the lightmap"));
   std::span<const uint64_t> mixed;
   if (in.sides) mixed = in.sides->mixed;
-  LUXEL_TRY(round.mixed, uploaded(commands, mixed, "the buffer of walls in the lightmap"));
+  LUXEL_TRY(round.mixed,
+            gpu::uploaded_or_one(commands, mixed, "the buffer of walls in the lightmap"));
   LUXEL_TRY(round.counts,
             gpu::make_buffer(round.device(), round.elements_of_chunk() * sizeof(EndCounts),
                              gpu::Access::device, "the buffer of counts"));
@@ -147,7 +140,8 @@ Result<gpu::Buffer> setup_of(const Round& round) {
                      .samples = round.samples,
                      .resolution = uint32_t(round.scene.in.atlas.resolution),
                      .has_mixed = has_mixed};
-  return uploaded(round.scene.commands, std::span(&values, 1), "the buffer of a round's settings");
+  return gpu::uploaded_or_one(round.scene.commands, std::span(&values, 1),
+                              "the buffer of a round's settings");
 }
 
 /// Counts of a chunk's elements and the list of open rays begin anew.
@@ -274,8 +268,8 @@ Status keep_more(const Round& round, const MoreHits& more, LandedRays& out) {
   LUXEL_CHECK(more.ends.size() == round.element_count() && more.hits.size() <= UINT32_MAX);
   gpu::Commands& commands = round.scene.commands;
   constexpr std::string_view kWhat = "the buffer of hits";
-  LUXEL_TRY(out.ends, uploaded(commands, std::span<const uint32_t>(more.ends), kWhat));
-  LUXEL_TRY(out.more, uploaded(commands, std::span<const gather::StoredHit>(more.hits), kWhat));
+  LUXEL_TRY(out.ends, gpu::uploaded_or_one(commands, more.ends, kWhat));
+  LUXEL_TRY(out.more, gpu::uploaded_or_one(commands, more.hits, kWhat));
   return {};
 }
 

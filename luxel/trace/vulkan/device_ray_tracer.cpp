@@ -27,14 +27,6 @@ struct TracePush {
   uint32_t first, end;
 };
 
-/// At least one value: a buffer is never empty.
-template <class T>
-Result<gpu::Buffer> uploaded_or_one(gpu::Commands& commands, std::vector<T> values,
-                                    std::string_view what) {
-  if (values.empty()) values.emplace_back();
-  return gpu::uploaded(commands, std::as_bytes(std::span(values)), what);
-}
-
 }  // namespace
 
 HierarchyKind faster_hierarchy(const gpu::Device& device) {
@@ -64,21 +56,21 @@ Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
   constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
   SeeThrough open = find_see_through(*scene_, triangles);
   lets_light_through_ = !open.triangles.empty();
-  LUXEL_TRY(open_materials_, uploaded_or_one(commands_, std::move(open.materials), kOpen));
-  LUXEL_TRY(open_triangles_, uploaded_or_one(commands_, std::move(open.triangles), kOpen));
-  LUXEL_TRY(open_texels_, uploaded_or_one(commands_, std::move(open.texels), kOpen));
+  LUXEL_TRY(open_materials_, gpu::uploaded_or_one(commands_, open.materials, kOpen));
+  LUXEL_TRY(open_triangles_, gpu::uploaded_or_one(commands_, open.triangles, kOpen));
+  LUXEL_TRY(open_texels_, gpu::uploaded_or_one(commands_, open.texels, kOpen));
   constexpr std::string_view kBoxes = "the buffer of boxes around triangles";
   std::vector<DeviceTriangle> sorted;
   if (kind == HierarchyKind::wide) {
     WideHierarchy wide = widen(sort_into_hierarchy(std::move(triangles), WideNode::kMostInLeaf));
-    LUXEL_TRY(nodes_, uploaded_or_one(commands_, std::move(wide.nodes), kBoxes));
+    LUXEL_TRY(nodes_, gpu::uploaded_or_one(commands_, wide.nodes, kBoxes));
     sorted = std::move(wide.triangles);
   } else {
     BinaryHierarchy binary = sort_into_hierarchy(std::move(triangles));
-    LUXEL_TRY(nodes_, uploaded_or_one(commands_, std::move(binary.nodes), kBoxes));
+    LUXEL_TRY(nodes_, gpu::uploaded_or_one(commands_, binary.nodes, kBoxes));
     sorted = std::move(binary.triangles);
   }
-  LUXEL_TRY(triangles_, uploaded_or_one(commands_, std::move(sorted), "the buffer of triangles"));
+  LUXEL_TRY(triangles_, gpu::uploaded_or_one(commands_, sorted, "the buffer of triangles"));
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include "luxel/base/differences.h"
 #include "luxel/base/parallel.h"
 #include "luxel/light/device/direct_light_on_device.h"
+#include "luxel/light/direct_light.h"
 
 namespace luxel::bench {
 namespace {
@@ -65,10 +66,11 @@ Status measure_direct_in(const std::string& name, scene::Scene loaded, const gpu
   LUXEL_TRY(light::DeviceDirectLight direct,
             light::DeviceDirectLight::make(tracer, commands, p->scene, p->lights));
   // The second time counts.
-  LUXEL_TRY(light::DirectLight found, direct.direct_light(p->elements, params, progress));
+  const light::LitElements lit{p->scene, p->elements, p->lights, *p->tracer, &direct};
+  LUXEL_TRY(light::DirectLight found, light::direct_light(lit, params, progress));
   const double before = direct.seconds();
   start = Clock::now();
-  LUXEL_TRY(found, direct.direct_light(p->elements, params, progress));
+  LUXEL_TRY(found, light::direct_light(lit, params, progress));
   seconds.whole = seconds_since(start), seconds.device = direct.seconds() - before;
   add_direct_row(name, expected, found, seconds, table);
   return {};

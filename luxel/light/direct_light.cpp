@@ -9,6 +9,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/light/kept_light.h"
+#include "luxel/light/light_device.h"
 #include "luxel/light/shadow_rays.h"
 
 namespace luxel::light {
@@ -193,12 +194,55 @@ void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> whi
 
 }  // namespace
 
+namespace {
+
+Receiver receiver_of(const transport::Elements& elements, size_t i, const DirectParams& params,
+                     float diagonal_m) {
+  return {elements.position[i], elements.normal[i], elements.geometric_normal[i],
+          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
+          seed_of_element(params, i)};
+}
+
+void set_light(size_t element, const LightAt& light, DirectLight& direct) {
+  direct.irradiance[element] = light.irradiance;
+  direct.variance[element] = light.variance;
+  direct.split_variance[element] = light.split_variance;
+}
+
+/// direct_light_again() by the device. Errors: as that.
+Status light_again_on_device(const LitElements& in, std::span<const uint32_t> which,
+                             const DirectParams& params, DirectLight& direct, Progress& progress) {
+  constexpr size_t kAtATime = size_t(1) << 18;  // 26 MB
+  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
+  std::vector<Receiver> receivers;
+  std::vector<LightAt> light;
+  progress.begin("direct light", which.size());
+  for (size_t first = 0; first < which.size(); first += kAtATime) {
+    const auto these = which.subspan(first, std::min(kAtATime, which.size() - first));
+    receivers.resize(these.size()), light.resize(these.size());
+    parallel_for(these.size(), 4096, [&](size_t begin, size_t end) {
+      for (size_t k = begin; k < end; ++k)
+        receivers[k] = receiver_of(in.elements, these[k], params, diagonal_m);
+    });
+    LUXEL_TRY(const uint64_t rays,
+              in.device->light_at(receivers, {.samples = params.samples}, light, progress));
+    for (size_t k = 0; k < these.size(); ++k) set_light(these[k], light[k], direct);
+    direct.rays += rays;
+    progress.advance(these.size());
+  }
+  return stopped(progress);
+}
+
+}  // namespace
+
 Status direct_light_again(const LitElements& in, std::span<const uint32_t> which,
                           const DirectParams& params, DirectLight& direct, Progress& progress) {
   const transport::Elements& elements = in.elements;
   LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == elements.size());
   LUXEL_CHECK(direct.by_layer.size() ==
               (params.layers ? params.layers->size() : 0) * elements.size());
+  if (in.device && !params.layers && params.sky_samples == 0)
+    return light_again_on_device(in, which, params, direct, progress);
   const float diagonal_m = scene::world_bounds(in.scene).diagonal();
   const DirectScene lit{in.scene, in.lights, in.tracer, diagonal_m};
   const KeptStage kept = kept_stage(params, which);
@@ -217,13 +261,9 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const size_t i = which[k];
-      const Receiver r{
-          elements.position[i], elements.normal[i], elements.geometric_normal[i],
-          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-          seed_of_element(params, i)};
-      const LightAt light = direct_light_at(lit, params, r, batch);
-      direct.irradiance[i] = light.irradiance;
-      direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;
+      set_light(i,
+                direct_light_at(lit, params, receiver_of(elements, i, params, diagonal_m), batch),
+                direct);
       if (params.layers) {
         const std::span<Rgb> own = direct.layers_of(i, *params.layers);
         std::ranges::fill(own, Rgb{});
@@ -240,18 +280,22 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
   return {};
 }
 
+Result<DirectLight> direct_light(const LitElements& in, const DirectParams& params,
+                                 Progress& progress) {
+  const size_t n = in.elements.size();
+  DirectLight out;
+  out.irradiance.resize(n), out.variance.resize(n), out.split_variance.resize(n);
+  if (params.layers) out.by_layer.resize(n * params.layers->size());
+  std::vector<uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY_STATUS(direct_light_again(in, all, params, out, progress));
+  return out;
+}
+
 Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Elements& elements,
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress) {
-  DirectLight out;
-  out.irradiance.resize(elements.size());
-  out.variance.resize(elements.size()), out.split_variance.resize(elements.size());
-  if (params.layers) out.by_layer.resize(elements.size() * params.layers->size());
-  std::vector<uint32_t> all(elements.size());
-  std::iota(all.begin(), all.end(), 0u);
-  LUXEL_TRY_STATUS(
-      direct_light_again({scene, elements, lights, tracer}, all, params, out, progress));
-  return out;
+  return direct_light({scene, elements, lights, tracer}, params, progress);
 }
 
 }  // namespace luxel::light

@@ -17,6 +17,8 @@
 
 namespace luxel::light {
 
+class LightDevice;
+
 struct DirectParams {
   int samples = 64;  ///< shadow rays per element towards triangle lights, and towards each sun disc
   uint64_t seed = 1;
@@ -64,10 +66,17 @@ struct LitElements {
   const transport::Elements& elements;
   const Lights& lights;
   const trace::RayTracer& tracer;
+  /// Lights them where light is not told apart, and sky_samples is 0; it keeps no parts. Null: the
+  /// processor does.
+  LightDevice* device = nullptr;
 };
 
+/// direct_light() of such elements. Errors: cancelled; those of the device.
+Result<DirectLight> direct_light(const LitElements& in, const DirectParams& params,
+                                 Progress& progress);
+
 /// The light of some elements again, with other samples, in place of what is there. Errors:
-/// cancelled; `direct` is of no use then.
+/// cancelled, those of the device; `direct` is of no use then.
 Status direct_light_again(const LitElements& in, std::span<const uint32_t> which,
                           const DirectParams& params, DirectLight& direct, Progress& progress);
 

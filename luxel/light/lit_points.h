@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "luxel/light/direct_light.h"
+#include "luxel/light/light_device.h"
 #include "luxel/light/points_of_texels.h"
 #include "luxel/light/shadow_rays.h"
 
@@ -26,11 +28,26 @@ struct PointBuffers {
   ShadowRayBatch batch;
 };
 
-/// Makes work.receivers of work.spread, the points of texel `i`, and room for their light.
+/// Makes work.receivers of work.spread, the points of texel `i`.
 void receive_at_points(const PointScene& place, uint64_t seed, size_t i, PointBuffers& work);
 
-/// The direct light at work.spread, the points of texel `i`.
-void light_points(const PointScene& place, const Lights& lights, const DirectParams& each, size_t i,
-                  PointBuffers& work);
+/// Makes work.light of work.receivers; work.batch has their shadow rays.
+void light_receivers(const DirectScene& lit, const LightAsked& asked, PointBuffers& work);
+
+/// Work on the points of some texels, by number. Both are called by many threads, and return how
+/// many rays they have traced.
+struct WorkOnPoints {
+  /// Makes work.receivers, and maybe work.on_side; no receivers: the texel is left out.
+  std::function<uint64_t(size_t k, PointBuffers& work)> begin;
+  /// Gets what begin() has made, and work.light of the receivers.
+  std::function<uint64_t(size_t k, PointBuffers& work)> end;
+};
+
+/// Lights the points of `count` texels, on in.light_device if there is one. `most_points`: of a
+/// texel. Returns how many rays were traced; `progress` advances by texels. Errors: cancelled;
+/// those of the device.
+Result<uint64_t> light_many_points(const TexelScene& in, size_t count, size_t most_points,
+                                   const LightAsked& asked, const WorkOnPoints& texels,
+                                   Progress& progress);
 
 }  // namespace luxel::light

@@ -143,6 +143,112 @@ void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> whi
   kept.keep(part, out.bytes);
 }
 
+/// What averages light over the points of some texels.
+struct Averaging {
+  const TexelScene& in;
+  const SupersampleParams& params;
+  std::span<const uint32_t> which;
+  const atlas::Cover& cover;
+  PointScene place;
+  DirectLight& direct;
+  // Per texel of `which`: whether its sample has backs before it; and whether it was averaged.
+  std::vector<uint8_t> near_back_faces, is_averaged;
+
+  LightAsked asked() const { return {samples_per_point(params.direct.samples)}; }
+  uint64_t begin(size_t k, PointBuffers& work);
+  uint64_t end(size_t k, PointBuffers& work);
+};
+
+/// WorkOnPoints::begin(): points all over the texel's footprint.
+uint64_t Averaging::begin(size_t k, PointBuffers& work) {
+  const uint32_t i = which[k];
+  const Receiver own = own_receiver(place, in.elements, i);
+  uint64_t rays = 0;
+  // A texel whose own sample lies inside a solid is hidden, and keeps its light.
+  if (is_dark(direct.irradiance[i])) {
+    rays += uint64_t(kEnclosureRaysOfTexel);
+    if (is_enclosed(place, own, kEnclosureRaysOfTexel)) return rays;
+  }
+  near_back_faces[k] = sees_backs(place, own);
+  const uint64_t seed = params.direct.seed;
+  atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), params.points, seed, work.spread);
+  receive_at_points(place, seed, i, work);
+  return rays + uint64_t(kEnclosureRays) + find_on_side(in, i, work.spread, work.on_side);
+}
+
+/// WorkOnPoints::end(): the light of its points, without those inside of solids or beyond walls;
+/// their mean takes the place of the light of the sample. Where light is told apart, work.batch
+/// has the points' shadow rays.
+uint64_t Averaging::end(size_t k, PointBuffers& work) {
+  const uint32_t i = which[k];
+  const LightLayers* layers = params.direct.layers;
+  std::vector<PointLight> points;
+  std::vector<Rgb> by_layer(layers ? layers->size() : 0);
+  uint64_t rays = 0;
+  for (size_t j = 0; j < work.light.size(); ++j) {
+    if (!work.on_side[j]) continue;
+    // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
+    // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
+    const LightAt& light = work.light[j];
+    const bool doubtful = near_back_faces[k] || is_dark(light.irradiance);
+    rays += doubtful ? uint64_t(kEnclosureRays) : 0;
+    if (doubtful && is_enclosed(place, work.receivers[j])) continue;
+    points.push_back({work.receivers[j].position, light.irradiance, light.variance});
+    if (layers) add_light_by_layer(work.batch, j, *layers, {1, 1, 1}, by_layer);
+  }
+  if (points.empty()) return rays;
+  Rgb sum{};
+  for (const PointLight& p : points) sum += p.irradiance;
+  direct.irradiance[i] = sum / float(points.size());
+  direct.variance[i] = direct.split_variance[i] = variance_of_mean(points);
+  for (size_t l = 0; l < by_layer.size(); ++l)
+    direct.layers_of(i, *layers)[l] = by_layer[l] / float(points.size());
+  is_averaged[k] = 1;
+  return rays;
+}
+
+/// Averages on in.light_device. Returns the number of rays. Errors: as average_texels().
+Result<uint64_t> average_on_device(Averaging& averaging, Progress& progress) {
+  return light_many_points(averaging.in, averaging.which.size(), size_t(averaging.params.points),
+                           averaging.asked(),
+                           {[&](size_t k, PointBuffers& work) { return averaging.begin(k, work); },
+                            [&](size_t k, PointBuffers& work) { return averaging.end(k, work); }},
+                           progress);
+}
+
+/// Averages by the processor, whose parts are kept. Returns the number of rays. Errors: cancelled.
+Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
+  const TexelScene& in = averaging.in;
+  const std::span<const uint32_t> which = averaging.which;
+  const DirectScene lit{in.scene, in.lights, in.tracer, averaging.place.diagonal_m};
+  const KeptStage kept = kept_stage(averaging.params, which, averaging.direct);
+  std::atomic<uint64_t> rays{0};
+  parallel_for(which.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
+    const auto averaged = std::span(averaging.is_averaged).subspan(begin, end - begin);
+    const size_t part = begin / kSupersampleGrain;
+    if (const auto found = find_part(kept, part, these, averaged, averaging.direct)) {
+      rays += *found;
+      return progress.skip(end - begin);
+    }
+    PointBuffers work;
+    uint64_t traced = 0;
+    for (size_t k = begin; k < end; ++k) {
+      work.receivers.clear();
+      traced += averaging.begin(k, work);
+      if (work.receivers.empty()) continue;
+      light_receivers(lit, averaging.asked(), work);
+      traced += work.batch.rays.size() + averaging.end(k, work);
+    }
+    rays += traced;
+    keep_part(kept, part, these, averaged, averaging.direct, traced);
+    progress.advance(end - begin);
+  });
+  LUXEL_TRY_STATUS(stopped(progress));
+  return uint64_t(rays);
+}
+
 }  // namespace
 
 Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32_t> which,
@@ -150,71 +256,21 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
                                     Progress& progress) {
   LUXEL_CHECK(params.points >= 1);
   const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
-  const PointScene place = point_scene(in);
-  DirectParams each = params.direct;
-  each.samples = samples_per_point(params.direct.samples);
-  std::atomic<uint64_t> rays{0};
-  std::vector<uint8_t> is_averaged(which.size());
-  const KeptStage kept = kept_stage(params, which, direct);
+  Averaging averaging{in,
+                      params,
+                      which,
+                      cover,
+                      point_scene(in),
+                      direct,
+                      std::vector<uint8_t>(which.size()),
+                      std::vector<uint8_t>(which.size())};
   progress.begin("supersample", which.size());
-  parallel_for(which.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
-    const std::span<uint8_t> averaged = std::span(is_averaged).subspan(begin, end - begin);
-    if (const auto found = find_part(kept, begin / kSupersampleGrain, these, averaged, direct)) {
-      rays += *found;
-      return progress.skip(end - begin);
-    }
-    PointBuffers work;
-    std::vector<PointLight> points;
-    std::vector<Rgb> by_layer(each.layers ? each.layers->size() : 0);
-    uint64_t traced = 0;
-    for (size_t k = begin; k < end; ++k) {
-      const uint32_t i = which[k];
-      const Receiver own = own_receiver(place, in.elements, i);
-      // A texel whose own sample lies inside a solid is hidden, and keeps its light.
-      if (is_dark(direct.irradiance[i])) {
-        traced += uint64_t(kEnclosureRaysOfTexel);
-        if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
-      }
-      const bool near_back_faces = sees_backs(place, own);
-      traced += uint64_t(kEnclosureRays);
-      // The light of points all over its footprint, without those inside of solids or beyond walls.
-      points.clear();
-      std::ranges::fill(by_layer, Rgb{});
-      atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), params.points, each.seed,
-                           work.spread);
-      light_points(place, in.lights, each, i, work);
-      traced += work.batch.rays.size() + find_on_side(in, i, work.spread, work.on_side);
-      for (size_t j = 0; j < work.light.size(); ++j) {
-        if (!work.on_side[j]) continue;
-        // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
-        // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
-        const LightAt& light = work.light[j];
-        const bool doubtful = near_back_faces || is_dark(light.irradiance);
-        traced += doubtful ? uint64_t(kEnclosureRays) : 0;
-        if (doubtful && is_enclosed(place, work.receivers[j])) continue;
-        points.push_back({work.receivers[j].position, light.irradiance, light.variance});
-        if (each.layers) add_light_by_layer(work.batch, j, *each.layers, {1, 1, 1}, by_layer);
-      }
-      // Their mean takes the place of the light of the sample.
-      if (points.empty()) continue;
-      Rgb sum{};
-      for (const PointLight& p : points) sum += p.irradiance;
-      direct.irradiance[i] = sum / float(points.size());
-      direct.variance[i] = direct.split_variance[i] = variance_of_mean(points);
-      for (size_t l = 0; l < by_layer.size(); ++l)
-        direct.layers_of(i, *each.layers)[l] = by_layer[l] / float(points.size());
-      is_averaged[k] = 1;
-    }
-    rays += traced;
-    keep_part(kept, begin / kSupersampleGrain, these, averaged, direct, traced);
-    progress.advance(end - begin);
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
+  const bool on_device = in.light_device && params.direct.layers == nullptr;
+  LUXEL_TRY(const uint64_t rays, on_device ? average_on_device(averaging, progress)
+                                           : average_in_parts(averaging, progress));
   Supersampled out{{}, rays};
   for (size_t k = 0; k < which.size(); ++k)
-    if (is_averaged[k]) out.texels.push_back(which[k]);
+    if (averaging.is_averaged[k]) out.texels.push_back(which[k]);
   return out;
 }
 

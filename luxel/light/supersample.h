@@ -12,11 +12,16 @@
 
 namespace luxel::light {
 
+/// The samples of a scene's texels.
+inline LitElements lit_elements(const TexelScene& in) {
+  return {in.scene, in.elements, in.lights, in.tracer, in.light_device};
+}
+
 struct SupersampleParams {
   int points = 16;         ///< per texel where light varies; 1: none
   float threshold = 0.1f;  ///< neighbours that differ by more of the brighter one make it vary
-  /// Settings of direct_light. Each point gets an eighth of the samples, but eight at least where
-  /// that many are asked for.
+  /// Settings of direct_light, without sky_samples. Each point gets an eighth of the samples, but
+  /// eight at least where that many are asked for.
   DirectParams direct;
 };
 
@@ -48,7 +53,7 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
 /// a punctual light where it differs between points of the texel, by its mean over `points` points
 /// of their footprint, and its variance by an estimate for that mean; all others, and hidden ones,
 /// keep their bits.
-/// Errors: cancelled.
+/// Errors: cancelled; those of in.light_device, as of the other two.
 Result<Supersampled> supersample(const TexelScene& in, const SupersampleParams& params,
                                  DirectLight& direct, Progress& progress);
 

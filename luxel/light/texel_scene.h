@@ -9,6 +9,8 @@
 
 namespace luxel::light {
 
+class LightDevice;
+
 /// Elements are those of the map's texels.
 struct TexelScene {
   const scene::Scene& scene;
@@ -17,6 +19,8 @@ struct TexelScene {
   const transport::Elements& elements;
   const Lights& lights;
   const trace::RayTracer& tracer;
+  /// Works direct light out where light is not told apart; keeps no parts. Null: the processor.
+  LightDevice* light_device = nullptr;
 };
 
 }  // namespace luxel::light

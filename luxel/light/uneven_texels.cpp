@@ -1,7 +1,6 @@
 #include "luxel/light/uneven_texels.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <iterator>
 
@@ -88,48 +87,77 @@ void keep_marked(std::span<const uint8_t> marked, std::vector<uint32_t>& which) 
   which.resize(kept);
 }
 
-/// Keeps the texels of `which` for which is_uneven(texel, cover, work, traced) says so, and adds
-/// its rays to `traced`. Returns the number of rays.
-template <class IsUneven>
-Result<uint64_t> keep_uneven(const TexelScene& in, std::vector<uint32_t>& which, Progress& progress,
-                             const IsUneven& is_uneven) {
-  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
-  std::atomic<uint64_t> rays{0};
-  std::vector<uint8_t> uneven(which.size());
-  progress.begin("supersample", which.size());
-  parallel_for(which.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    PointBuffers work;
-    uint64_t traced = 0;
-    for (size_t k = begin; k < end; ++k) uneven[k] = is_uneven(which[k], cover.of(k), work, traced);
-    rays += traced;
-    progress.advance(end - begin);
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
-  keep_marked(uneven, which);
-  return uint64_t(rays);
-}
-
 /// Keeps those of `which` whose light differs at some of a few points. Where a chart ends there is
 /// no neighbour who would tell of a shadow's edge. Returns the number of rays.
 Result<uint64_t> keep_uneven_at_borders(const TexelScene& in, const SupersampleParams& params,
                                         const DirectLight& direct, std::vector<uint32_t>& which,
                                         Progress& progress) {
   const PointScene place = point_scene(in);
-  DirectParams each = params.direct;
-  each.samples = samples_per_point(params.direct.samples);
-  return keep_uneven(in, which, progress,
-                     [&](uint32_t i, const auto& cover, PointBuffers& work, uint64_t& traced) {
-                       atlas::spread_points(in.atlas, in.map.texels[i], cover, kBorderPoints,
-                                            each.seed, work.spread);
-                       light_points(place, in.lights, each, i, work);
-                       traced += work.batch.rays.size();
-                       return std::ranges::any_of(work.light, [&](const LightAt& l) {
-                         return differ({l.irradiance, l.variance},
-                                       {direct.irradiance[i], direct.variance[i]},
-                                       params.threshold);
-                       });
-                     });
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
+  std::vector<uint8_t> uneven(which.size());
+  const auto begin = [&](size_t k, PointBuffers& work) {
+    atlas::spread_points(in.atlas, in.map.texels[which[k]], cover.of(k), kBorderPoints,
+                         params.direct.seed, work.spread);
+    receive_at_points(place, params.direct.seed, which[k], work);
+    return uint64_t(0);
+  };
+  const auto end = [&](size_t k, PointBuffers& work) {
+    const size_t i = which[k];
+    uneven[k] = std::ranges::any_of(work.light, [&](const LightAt& l) {
+      return differ({l.irradiance, l.variance}, {direct.irradiance[i], direct.variance[i]},
+                    params.threshold);
+    });
+    return uint64_t(0);
+  };
+  progress.begin("supersample", which.size());
+  LUXEL_TRY(const uint64_t rays,
+            light_many_points(in, which.size(), kBorderPoints,
+                              {samples_per_point(params.direct.samples)}, {begin, end}, progress));
+  keep_marked(uneven, which);
+  return rays;
+}
+
+bool any_differs(std::span<const LightAt> light, const LightAt& from, Rgb others, float threshold) {
+  return std::ranges::any_of(light, [&](const LightAt& l) {
+    return differ({others + l.irradiance, l.variance}, {others + from.irradiance, from.variance},
+                  threshold);
+  });
+}
+
+/// Light of punctual lights, by one ray at each of some texels' points and at the sample.
+struct PunctualLook {
+  std::vector<std::vector<LightAt>> light;  ///< per texel, the sample's last
+  uint64_t rays = 0;
+};
+
+/// Looks at all texels of `which`, and leaves those there whose points differ.
+Result<PunctualLook> look_at_punctual_lights(const TexelScene& in, const SupersampleParams& params,
+                                             std::vector<uint32_t>& which, Progress& progress) {
+  const PointScene place = point_scene(in);
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
+  const uint64_t seed = params.direct.seed;
+  std::vector<uint8_t> differs(which.size());
+  std::vector<std::vector<LightAt>> light(which.size());
+  const auto begin = [&](size_t k, PointBuffers& work) {
+    const uint32_t i = which[k];
+    atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), kFleckPoints, seed, work.spread);
+    receive_at_points(place, seed, i, work);
+    work.receivers.push_back(own_receiver(place, in.elements, i));
+    work.receivers.back().seed = hash64(seed, i);
+    return uint64_t(0);
+  };
+  const auto end = [&](size_t k, PointBuffers& work) {
+    differs[k] = any_differs(work.light, work.light.back(), {}, params.threshold);
+    if (differs[k]) light[k] = work.light;
+    return uint64_t(0);
+  };
+  progress.begin("supersample", which.size());
+  LUXEL_TRY(const uint64_t rays,
+            light_many_points(in, which.size(), kFleckPoints + 1,
+                              {.samples = 1, .punctual_alone = true}, {begin, end}, progress));
+  keep_marked(differs, which);
+  std::erase_if(light, [](const std::vector<LightAt>& l) { return l.empty(); });
+  return PunctualLook{std::move(light), rays};
 }
 
 /// Keeps those of `which` in which some points are in the light of a punctual light and others are
@@ -139,32 +167,29 @@ Result<uint64_t> keep_flecked(const TexelScene& in, const SupersampleParams& par
                               const DirectLight& direct, std::vector<uint32_t>& which,
                               Progress& progress) {
   const PointScene place = point_scene(in);
-  const DirectScene lit{in.scene, in.lights, in.tracer, place.diagonal_m};
   const uint64_t seed = params.direct.seed;
-  return keep_uneven(
-      in, which, progress,
-      [&](uint32_t i, const auto& cover, PointBuffers& work, uint64_t& traced) {
-        atlas::spread_points(in.atlas, in.map.texels[i], cover, kFleckPoints, seed, work.spread);
-        receive_at_points(place, seed, i, work);
-        work.receivers.push_back(own_receiver(place, in.elements, i));
-        work.receivers.back().seed = hash64(seed, i);
-        work.light.emplace_back();
-        punctual_light_at(lit, 1, work.receivers, work.batch, work.light);
-        traced += work.batch.rays.size();
-        const auto any_differs = [&](const LightAt& from, Rgb others) {
-          return std::ranges::any_of(work.light, [&](const LightAt& l) {
-            return differ({others + l.irradiance, l.variance},
-                          {others + from.irradiance, from.variance}, params.threshold);
-          });
-        };
-        // Mostly all points and the sample are in the light, or none is.
-        if (!any_differs(LightAt(work.light.back()), {})) return false;
-        LightAt own;
-        punctual_light_at(lit, kRaysOfSample, std::span(work.receivers).last(1), work.batch,
-                          {&own, 1});
-        traced += work.batch.rays.size();
-        return any_differs(own, max(direct.irradiance[i] - own.irradiance, Rgb{}));
-      });
+  // 1. Mostly all points and the sample are in the light, or none is.
+  LUXEL_TRY(const PunctualLook look, look_at_punctual_lights(in, params, which, progress));
+  // 2. Where they differ, the sample is looked at with more rays.
+  std::vector<uint8_t> flecked(which.size());
+  const auto begin = [&](size_t k, PointBuffers& work) {
+    work.receivers.push_back(own_receiver(place, in.elements, which[k]));
+    work.receivers.back().seed = hash64(seed, which[k]);
+    return uint64_t(0);
+  };
+  const auto end = [&](size_t k, PointBuffers& work) {
+    const LightAt& own = work.light.front();
+    const Rgb others = max(direct.irradiance[which[k]] - own.irradiance, Rgb{});
+    flecked[k] = any_differs(look.light[k], own, others, params.threshold);
+    return uint64_t(0);
+  };
+  progress.begin("supersample", which.size());
+  LUXEL_TRY(
+      const uint64_t rays,
+      light_many_points(in, which.size(), 1, {.samples = kRaysOfSample, .punctual_alone = true},
+                        {begin, end}, progress));
+  keep_marked(flecked, which);
+  return look.rays + rays;
 }
 
 /// Those of `among` that are not in `known` and face a punctual light; all in the order of the map.

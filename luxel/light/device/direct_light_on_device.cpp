@@ -1,11 +1,9 @@
 #include "luxel/light/device/direct_light_on_device.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
-#include "luxel/base/random.h"
 #include "luxel/light/device/shaders/direct_light_binary.comp.h"
 #include "luxel/light/device/shaders/direct_light_wide.comp.h"
 #include "luxel/light/shadow_rays.h"
@@ -14,8 +12,8 @@ namespace luxel::light {
 namespace {
 
 constexpr size_t kGroup = 64;  // as the shaders have it
-/// Elements that are sent at a time: 11 MB.
-constexpr size_t kElementsAtATime = size_t(1) << 18;
+/// Receivers that are sent at a time: 11 MB.
+constexpr size_t kReceiversAtATime = size_t(1) << 18;
 
 // Structs of shaders/shadow_rays.glsl.
 
@@ -73,6 +71,8 @@ Status DeviceDirectLight::make_steps(const trace::DeviceRayTracer& tracer, const
       wide ? gpu::Spirv(direct_light_wide_comp) : gpu::Spirv(direct_light_binary_comp);
   for (const DirectStep step : steps_of(lights)) {
     steps_.emplace_back();
+    steps_.back().is_punctual =
+        step == DirectStep::punctual_lights || step == DirectStep::drawn_punctual_lights;
     LUXEL_TRY(steps_.back().pipeline,
               gpu::make_compute_pipeline(commands_->device(), shader, {sizeof(DirectPush), {}},
                                          {uint32_t(tracer.lets_light_through()), uint32_t(step)}));
@@ -93,7 +93,7 @@ Result<DeviceDirectLight> DeviceDirectLight::make(const trace::DeviceRayTracer& 
 Status DeviceDirectLight::make_room(size_t count) {
   if (room_ >= count) return {};
   const gpu::Device& device = commands_->device();
-  constexpr std::string_view kWhat = "the buffer of elements";
+  constexpr std::string_view kWhat = "the buffer of lit places";
   sent_ = {}, receivers_ = {}, light_ = {}, answered_ = {}, room_ = 0;
   const size_t in = count * sizeof(DeviceReceiver), out = count * sizeof(DeviceLightAt);
   LUXEL_TRY(sent_, gpu::make_buffer(device, in, gpu::Access::from_host, kWhat));
@@ -104,8 +104,18 @@ Status DeviceDirectLight::make_room(size_t count) {
   return {};
 }
 
+/// A receiver with four times the samples takes four times as long.
+void DeviceDirectLight::fit_pieces(int samples) {
+  constexpr size_t kFirstThreadSamples = 64 * 64 * 64;
+  if (samples == piece_samples_) return;
+  piece_samples_ = samples;
+  for (Step& step : steps_)
+    step.piece.items = std::max<size_t>(kFirstThreadSamples / (kGroup * size_t(samples)), 1);
+}
+
 /// Works the light of the first `count` receivers of sent_ out: it lies in answered_ then.
-Status DeviceDirectLight::light_some(size_t count, int samples, const Progress& progress) {
+Status DeviceDirectLight::light_sent(size_t count, const LightAsked& asked,
+                                     const Progress& progress) {
   const gpu::Device& device = commands_->device();
   LUXEL_TRY_STATUS(gpu::copy_bytes(*commands_, sent_, receivers_, count * sizeof(DeviceReceiver)));
   LUXEL_TRY_STATUS(commands_->run([&](VkCommandBuffer c) {
@@ -115,9 +125,11 @@ Status DeviceDirectLight::light_some(size_t count, int samples, const Progress& 
                         .receivers = receivers_.address,
                         .light = light_.address,
                         .count = uint32_t(count),
-                        .samples = uint32_t(samples)};
+                        .samples = uint32_t(asked.samples)};
+  fit_pieces(asked.samples);
   // Each step adds to what those before it have found.
   for (Step& step : steps_) {
+    if (asked.punctual_alone && !step.is_punctual) continue;
     LUXEL_TRY(const double took,
               gpu::run_groups(*commands_, step.pipeline, push, (count + kGroup - 1) / kGroup,
                               step.piece, &progress));
@@ -126,49 +138,31 @@ Status DeviceDirectLight::light_some(size_t count, int samples, const Progress& 
   return gpu::copy_bytes(*commands_, light_, answered_, count * sizeof(DeviceLightAt));
 }
 
-Status DeviceDirectLight::direct_light_again(const transport::Elements& elements,
-                                             std::span<const uint32_t> which,
-                                             const DirectParams& params, DirectLight& direct,
+Result<uint64_t> DeviceDirectLight::light_at(std::span<const Receiver> receivers,
+                                             const LightAsked& asked, std::span<LightAt> out,
                                              Progress& progress) {
-  LUXEL_CHECK(params.samples >= 1 && params.sky_samples == 0 && !params.layers);
-  LUXEL_CHECK(direct.irradiance.size() == elements.size());
-  progress.begin("direct light", which.size());
-  for (size_t begin = 0; begin < which.size(); begin += kElementsAtATime) {
-    if (progress.cancelled()) break;
-    const std::span<const uint32_t> these =
-        which.subspan(begin, std::min(kElementsAtATime, which.size() - begin));
+  LUXEL_CHECK(asked.samples >= 1 && out.size() == receivers.size());
+  uint64_t rays = 0;
+  for (size_t first = 0; first < receivers.size(); first += kReceiversAtATime) {
+    const auto these =
+        receivers.subspan(first, std::min(kReceiversAtATime, receivers.size() - first));
     LUXEL_TRY_STATUS(make_room(these.size()));
-    auto* receivers = reinterpret_cast<DeviceReceiver*>(sent_.mapped);
-    parallel_for(these.size(), 4096, [&](size_t first, size_t end) {
-      for (size_t k = first; k < end; ++k) {
-        const uint32_t i = these[k];
-        const uint64_t seed = seed_of_element(params, i);
-        receivers[k] = {elements.position[i], elements.normal[i], elements.geometric_normal[i],
-                        uint32_t(seed), uint32_t(seed >> 32)};
+    auto* sent = reinterpret_cast<DeviceReceiver*>(sent_.mapped);
+    parallel_for(these.size(), 4096, [&](size_t begin, size_t end) {
+      for (size_t k = begin; k < end; ++k) {
+        const Receiver& r = these[k];
+        sent[k] = {r.position, r.normal, r.geometric_normal, uint32_t(r.seed),
+                   uint32_t(r.seed >> 32)};
       }
     });
-    LUXEL_TRY_STATUS(light_some(these.size(), params.samples, progress));
+    LUXEL_TRY_STATUS(light_sent(these.size(), asked, progress));
     const auto* light = reinterpret_cast<const DeviceLightAt*>(answered_.mapped);
     for (size_t k = 0; k < these.size(); ++k) {
-      const uint32_t i = these[k];
-      direct.irradiance[i] = light[k].irradiance, direct.variance[i] = light[k].variance;
-      direct.split_variance[i] = light[k].split_variance, direct.rays += light[k].rays;
+      out[first + k] = {light[k].irradiance, light[k].variance, light[k].split_variance};
+      rays += light[k].rays;
     }
-    progress.advance(these.size());
   }
-  return stopped(progress);
-}
-
-Result<DirectLight> DeviceDirectLight::direct_light(const transport::Elements& elements,
-                                                    const DirectParams& params,
-                                                    Progress& progress) {
-  DirectLight out;
-  out.irradiance.resize(elements.size());
-  out.variance.resize(elements.size()), out.split_variance.resize(elements.size());
-  std::vector<uint32_t> all(elements.size());
-  std::iota(all.begin(), all.end(), 0u);
-  LUXEL_TRY_STATUS(direct_light_again(elements, all, params, out, progress));
-  return out;
+  return rays;
 }
 
 }  // namespace luxel::light

@@ -1,18 +1,14 @@
 // Light that arrives straight from the sources, worked out by a graphics device.
 #pragma once
 
-#include <memory>
-
 #include "luxel/light/device/device_lights.h"
-#include "luxel/light/direct_light.h"
+#include "luxel/light/light_device.h"
 
 namespace luxel::light {
 
-/// Direct light of one scene on a device, by the same shadow rays as light::direct_light(), up to
-/// rounding: those of each element have the same seed. Where both triangles and punctual lights are
-/// drawn, the variance of either is estimated for itself. Everything that it is made with is kept
-/// by reference and must outlive it. One thread at a time uses it.
-class DeviceDirectLight {
+/// Direct light of one scene on a device. Everything that it is made with is kept by reference and
+/// must outlive it.
+class DeviceDirectLight final : public LightDevice {
  public:
   /// The device has double precision (gpu::Device::has_doubles) and knows all of the lights
   /// (device_knows()), and nothing in the scene tints light. Errors: no memory, the driver does not
@@ -21,15 +17,8 @@ class DeviceDirectLight {
                                         gpu::Commands& commands, const scene::Scene& scene,
                                         const Lights& lights);
 
-  /// light::direct_light_again(), without parts, layers and sky_samples: the light of some elements
-  /// in place of what is there. Errors: cancelled, no memory, the device is lost; `direct` is of no
-  /// use then.
-  Status direct_light_again(const transport::Elements& elements, std::span<const uint32_t> which,
-                            const DirectParams& params, DirectLight& direct, Progress& progress);
-
-  /// That of all elements, from scratch. Errors: as above.
-  Result<DirectLight> direct_light(const transport::Elements& elements, const DirectParams& params,
-                                   Progress& progress);
+  Result<uint64_t> light_at(std::span<const Receiver> receivers, const LightAsked& asked,
+                            std::span<LightAt> out, Progress& progress) override;
 
   /// Seconds that the device has worked, as the processor sees them.
   double seconds() const { return seconds_; }
@@ -37,19 +26,22 @@ class DeviceDirectLight {
  private:
   struct Step {
     gpu::Pipeline pipeline;
-    gpu::PieceSize piece{64};  ///< of groups of 64 elements
+    bool is_punctual = false;
+    gpu::PieceSize piece{};  ///< of groups of 64 receivers with piece_samples_ samples
   };
 
   explicit DeviceDirectLight(gpu::Commands& commands) : commands_(&commands) {}
   Status make_steps(const trace::DeviceRayTracer& tracer, const Lights& lights);
   Status make_room(size_t count);
-  Status light_some(size_t count, int samples, const Progress& progress);
+  void fit_pieces(int samples);
+  Status light_sent(size_t count, const LightAsked& asked, const Progress& progress);
 
   gpu::Commands* commands_;
   DeviceLights lights_;
   std::vector<Step> steps_;
   gpu::Buffer sent_, receivers_, light_, answered_;
-  size_t room_ = 0;  ///< elements that the buffers have room for
+  size_t room_ = 0;  ///< receivers that the buffers have room for
+  int piece_samples_ = 0;
   double seconds_ = 0;
 };
 

@@ -6,6 +6,8 @@
 #include "luxel/base/differences.h"
 #include "luxel/base/random.h"
 #include "luxel/gpu/device_test_support.h"
+#include "luxel/light/direct_light.h"
+#include "luxel/light/shadow_rays.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
@@ -57,9 +59,10 @@ void DirectLightOnDevice::expect_the_same(const scene::Scene& scene, int samples
   Progress progress;
   const auto expected = direct_light(scene, elements, lights, *on_processor, params, progress);
   ASSERT_TRUE(device_knows(lights));
-  auto direct = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
-  ASSERT_TRUE(direct) << direct.error().message;
-  const auto found = direct->direct_light(elements, params, progress);
+  auto device = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
+  ASSERT_TRUE(device) << device.error().message;
+  const auto found =
+      direct_light({scene, elements, lights, *on_processor, &*device}, params, progress);
   ASSERT_TRUE(found) << found.error().message;
   std::vector<float> light, expected_light;
   for (const Rgb& e : found->irradiance) light.push_back(luminance(e));
@@ -181,26 +184,67 @@ TEST_F(DirectLightOnDevice, IsThatOfSomeElements) {
   const scene::Scene scene = scene::cornell_box();
   const transport::Elements elements = places_of(scene, 200);
   const Lights lights = collect_lights(scene);
+  const auto on_processor = trace::RayTracer::build(scene);
   const auto tracer = trace::DeviceRayTracer::build(*device_, scene);
-  ASSERT_TRUE(tracer);
-  auto direct = DeviceDirectLight::make(*tracer, *commands_, scene, lights);
-  ASSERT_TRUE(direct);
+  ASSERT_TRUE(tracer && on_processor);
+  auto device = DeviceDirectLight::make(*tracer, *commands_, scene, lights);
+  ASSERT_TRUE(device);
+  const LitElements lit{scene, elements, lights, *on_processor, &*device};
   const DirectParams params{.samples = 16};
   Progress progress;
-  auto all = direct->direct_light(elements, params, progress);
+  auto all = direct_light(lit, params, progress);
   ASSERT_TRUE(all);
   DirectLight some = *all;
   const std::vector<uint32_t> which{3, 17, 150};
-  ASSERT_TRUE(direct->direct_light_again(elements, which, {.samples = 256}, some, progress));
+  ASSERT_TRUE(direct_light_again(lit, which, {.samples = 256}, some, progress));
   for (size_t i = 0; i < elements.size(); ++i) {
     if (std::ranges::find(which, uint32_t(i)) != which.end()) continue;
     EXPECT_EQ(some.irradiance[i], all->irradiance[i]);
   }
   DirectLight again = *all;
-  ASSERT_TRUE(direct->direct_light_again(elements, which, params, again, progress));
+  ASSERT_TRUE(direct_light_again(lit, which, params, again, progress));
   EXPECT_EQ(again.irradiance, all->irradiance) << "the same seed, the same rays";
   progress.request_cancel();
-  EXPECT_FALSE(direct->direct_light_again(elements, which, params, again, progress));
+  EXPECT_FALSE(direct_light_again(lit, which, params, again, progress));
+}
+
+std::vector<float> luminances(std::span<const LightAt> light) {
+  std::vector<float> out;
+  for (const LightAt& l : light) out.push_back(luminance(l.irradiance));
+  return out;
+}
+
+// A panel lights all places, too, but is not asked about.
+TEST_F(DirectLightOnDevice, IsThatOfPunctualLightsAlone) {
+  scene::Scene scene = blocks_under_punctual_lights();
+  const uint32_t panel = scene::add_material(scene, "panel", {}, Rgb{5, 5, 5});
+  scene::add_rectangle(scene, {-4, 4, -4, 4}, 9, false, panel);
+  const transport::Elements elements = places_of(scene, 2000);
+  const Lights lights = collect_lights(scene);
+  ASSERT_FALSE(lights.triangles.empty());
+  const auto on_processor = trace::RayTracer::build(scene);
+  const auto on_device = trace::DeviceRayTracer::build(*device_, scene);
+  ASSERT_TRUE(on_processor && on_device);
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  std::vector<Receiver> receivers;
+  for (size_t i = 0; i < elements.size(); ++i)
+    receivers.push_back(
+        {elements.position[i], elements.normal[i], elements.geometric_normal[i],
+         trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
+         hash64(3, i)});
+  std::vector<LightAt> expected(receivers.size()), found(receivers.size());
+  ShadowRayBatch batch;
+  punctual_light_at({scene, lights, *on_processor, diagonal_m}, 8, receivers, batch, expected);
+  auto device = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
+  ASSERT_TRUE(device);
+  Progress progress;
+  const auto rays =
+      device->light_at(receivers, {.samples = 8, .punctual_alone = true}, found, progress);
+  ASSERT_TRUE(rays);
+  EXPECT_EQ(*rays, batch.rays.size());
+  const Differences d = differences(luminances(found), luminances(expected));
+  EXPECT_LT(d.rms, kMostRms);
+  EXPECT_LT(std::abs(d.bias), kMostBias);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include "luxel/light/direct_light.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/rays/ray_device.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
@@ -24,11 +23,7 @@ class FailingDevice final : public gather::RayDevice {
  public:
   explicit FailingDevice(ErrorCode code, bool traces = false) : code_(code), traces_(traces) {}
   Status begin(const gather::TraceScene&) override { return {}; }
-  bool knows_lights(const gather::TraceScene&) const override { return false; }
-  Result<light::DirectLight> direct_light(const gather::TraceScene&, const light::DirectParams&,
-                                          Progress&) override {
-    return fail(code_, "the cable is out");
-  }
+  Result<light::LightDevice*> light_device(const gather::TraceScene&) override { return nullptr; }
   Status trace(const gather::TraceScene&, int samples, const gather::TraceParams&,
                gather::TracedHits& hits, Progress& progress) override {
     ++traced;

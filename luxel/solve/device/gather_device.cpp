@@ -28,17 +28,12 @@ class GatherDevice final : public gather::RayDevice {
     return {};
   }
 
-  bool knows_lights(const gather::TraceScene& in) const override {
-    return device_->has_doubles && light::device_knows(in.lights);
-  }
-
-  Result<light::DirectLight> direct_light(const gather::TraceScene& in,
-                                          const light::DirectParams& params,
-                                          Progress& progress) override {
+  Result<light::LightDevice*> light_device(const gather::TraceScene& in) override {
     LUXEL_CHECK(tracer_);
+    if (!device_->has_doubles || !light::device_knows(in.lights)) return nullptr;
     LUXEL_TRY(light::DeviceDirectLight direct,
               light::DeviceDirectLight::make(*tracer_, *commands_, in.scene, in.lights));
-    return direct.direct_light(in.elements, params, progress);
+    return &direct_.emplace(std::move(direct));
   }
 
   Status trace(const gather::TraceScene& in, int samples, const gather::TraceParams& params,
@@ -65,13 +60,14 @@ class GatherDevice final : public gather::RayDevice {
     return {};
   }
 
-  void forget() override { rays_.reset(), tracer_.reset(), gathered_.clear(); }
+  void forget() override { rays_.reset(), direct_.reset(), tracer_.reset(), gathered_.clear(); }
 
  private:
   const gpu::Device* device_;
   std::optional<gpu::Commands> commands_;
-  std::optional<trace::DeviceRayTracer> tracer_;  ///< of the last begin()
-  std::optional<LandedRays> rays_;                ///< of the last trace(); goes before commands_
+  std::optional<trace::DeviceRayTracer> tracer_;    ///< of the last begin()
+  std::optional<light::DeviceDirectLight> direct_;  ///< goes before tracer_
+  std::optional<LandedRays> rays_;                  ///< of the last trace(); goes before commands_
   std::vector<DeviceGathered> gathered_;
 };
 

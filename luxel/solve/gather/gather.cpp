@@ -194,12 +194,16 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   const auto start = Clock::now();
   const transport::OwnSides sides =
       transport::find_own_sides(scene.scene, scene.atlas, scene.map, scene.tracer);
-  Request in{scene, layers, params, stores, observer, sides};
+  light::TexelScene lit = scene;
+  Request in{lit, layers, params, stores, observer, sides};
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
   if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
   const DeviceUse use{scene.elements.size() > 0 ? stores.device : nullptr};
-  if (use.device) LUXEL_TRY_STATUS(use.device->begin(trace_scene(scene, &sides)));
+  if (use.device) {
+    LUXEL_TRY_STATUS(use.device->begin(trace_scene(scene, &sides)));
+    LUXEL_TRY(lit.light_device, use.device->light_device(trace_scene(scene, &sides)));
+  }
   // 1. Light straight from the lights, with shadow rays.
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));
   // 2. The rays that every element gets, and what they hit.

@@ -25,23 +25,6 @@ void show(const GatherObserver& observer, const Progressive& light, bool is_last
                         .error_rms = light.errors.expected.rms()});
 }
 
-namespace {
-
-/// The direct light of all elements, on the device if it can. Errors: cancelled; those of the
-/// device.
-Result<light::DirectLight> first_direct(const Request& in, light::DirectParams params,
-                                        Progress& progress) {
-  const light::TexelScene& scene = in.scene;
-  const TraceScene traced = trace_scene(scene, &in.sides);
-  if (!in.stores.device || scene.elements.size() == 0 || !in.stores.device->knows_lights(traced))
-    return light::direct_light(scene.scene, scene.elements, scene.lights, scene.tracer, params,
-                               progress);
-  params.parts = nullptr;
-  return in.stores.device->direct_light(traced, params, progress);
-}
-
-}  // namespace
-
 Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
   const light::TexelScene& scene = in.scene;
   const light::SupersampleParams supersample = in.supersample_params();
@@ -54,7 +37,8 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
     light.averaged = size_t(std::ranges::count(light.levels.averaged, 1));
     return {};
   }
-  LUXEL_TRY(light.direct, first_direct(in, supersample.direct, progress));
+  LUXEL_TRY(light.direct,
+            light::direct_light(light::lit_elements(scene), supersample.direct, progress));
   // Only light with noise is ever looked at more finely. Where it comes from one lamp, and few
   // elements see that one, all others' rays say nothing of how many it takes.
   const auto noisy = std::ranges::count_if(light.direct.variance, [](float v) { return v > 0; });

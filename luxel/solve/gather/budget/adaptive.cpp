@@ -207,8 +207,7 @@ Status look_at_level(const light::TexelScene& in, const ByLook& which, int level
   if (which.single.empty()) return {};
   light::DirectParams finer = params.direct;
   finer.samples *= factor;
-  return direct_light_again({in.scene, in.elements, in.lights, in.tracer}, which.single, finer,
-                            direct, progress);
+  return direct_light_again(light::lit_elements(in), which.single, finer, direct, progress);
 }
 
 Result<size_t> refine_direct(const light::TexelScene& in, std::span<const uint8_t> chosen,

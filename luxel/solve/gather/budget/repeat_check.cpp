@@ -77,8 +77,7 @@ Result<light::DirectLight> direct_again(const light::TexelScene& of_chosen,
                                         const light::SupersampleParams& params,
                                         Progress& progress) {
   LUXEL_TRY(light::DirectLight out,
-            light::direct_light(of_chosen.scene, of_chosen.elements, of_chosen.lights,
-                                of_chosen.tracer, params.direct, progress));
+            light::direct_light(light::lit_elements(of_chosen), params.direct, progress));
   int finest = 0;
   for (const uint32_t i : elements) finest = std::max(finest, int(levels.level[i]));
   for (int level = 0; level <= finest; ++level) {
@@ -175,8 +174,8 @@ Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transpor
   for (const uint32_t i : chosen.elements) is_chosen[i] = 1;
   LUXEL_TRY(const std::vector<Rgb> known,
             gather_from(sent, light.hits, light.direct.irradiance, is_chosen, progress));
-  const light::TexelScene of_chosen{in.scene,      in.atlas,  chosen.map,
-                                    chosen.places, in.lights, in.tracer};
+  const light::TexelScene of_chosen{in.scene,  in.atlas,  chosen.map,     chosen.places,
+                                    in.lights, in.tracer, in.light_device};
   const Repeated repeated{of_chosen, sides, light, params, chosen.elements, sent};
   LUXEL_TRY(const LightAgain again, light_again(repeated, progress));
   // 3. The sums of all variances, as those say that were chosen.

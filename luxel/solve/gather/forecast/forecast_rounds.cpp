@@ -97,15 +97,14 @@ Status light_coarsely(RoundsTrial& trial, Progress& progress) {
 }
 
 Status light_directly(RoundsTrial& trial, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   const light::SupersampleParams params = trial.supersample();
-  LUXEL_TRY_STATUS(direct_light_again({scene, elements, lights, tracer},
-                                      with_neighbours(map, trial.texels), params.direct,
+  LUXEL_TRY_STATUS(direct_light_again(light::lit_elements(trial.in),
+                                      with_neighbours(trial.in.map, trial.texels), params.direct,
                                       trial.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample({scene, atlas, map, elements, lights, tracer}, trial.texels, params,
-                               trial.direct, progress));
-  trial.levels.level.resize(elements.size()), trial.levels.averaged.resize(elements.size());
+            light::supersample(trial.in, trial.texels, params, trial.direct, progress));
+  const size_t n = trial.in.elements.size();
+  trial.levels.level.resize(n), trial.levels.averaged.resize(n);
   for (const uint32_t i : averaged.texels) trial.levels.averaged[i] = 1;
   return {};
 }
@@ -128,17 +127,18 @@ struct ForecastErrors {
 
 /// As gather() knows them, but in the coarse light: one bounce of it.
 Result<ForecastErrors> errors_of(const RoundsTrial& trial, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   // bounce() starts from what it is given and the soft sky: together the coarse light.
   std::vector<Rgb> given = trial.coarse;
   for (const uint32_t i : trial.texels)
     given[i] = given[i] - trial.hits.sky[i] * (kPi / float(trial.hits.samples[i]));
   LUXEL_TRY(const Bounced bounced,
-            bounce(map, elements, trial.hits, given, trial.behind,
+            bounce(trial.in.map, trial.in.elements, trial.hits, given, trial.behind,
                    {.bounces = trial.params.bounces == 0 ? 0 : 1}, progress));
   std::vector<Rgb> irradiance = trial.coarse;
   for (const uint32_t i : trial.texels)
     irradiance[i] = trial.direct.irradiance[i] + (bounced.irradiance[i] - given[i]);
+  const auto& atlas = trial.in.atlas;
+  const auto& map = trial.in.map;
   const auto direct = pooled_variances(
       atlas, map, {trial.direct.variance, trial.direct.split_variance}, trial.texels);
   const auto gathered =

@@ -8,8 +8,7 @@
 #include "luxel/base/result.h"
 
 namespace luxel::light {
-struct DirectLight;
-struct DirectParams;
+class LightDevice;
 }  // namespace luxel::light
 
 namespace luxel::gather {
@@ -20,8 +19,8 @@ struct TraceParams;
 struct TracedHits;
 struct TraceScene;
 
-/// Works the first direct light out, traces the first round of rays, and keeps where they land. One
-/// solution at a time uses it. It keeps no parts, and shows nobody how the round grows.
+/// Works direct light out, traces the first round of rays, and keeps where they land. One solution
+/// at a time uses it. It keeps no parts, and shows nobody how the round grows.
 class RayDevice {
  public:
   virtual ~RayDevice() = default;
@@ -31,14 +30,9 @@ class RayDevice {
   /// lost.
   virtual Status begin(const TraceScene& in) = 0;
 
-  /// Whether it knows all that shines in the scene; else direct light is the processor's.
-  virtual bool knows_lights(const TraceScene& in) const = 0;
-
-  /// light::direct_light(), where it knows the lights. In params neither parts, layers nor
-  /// sky_samples. Errors: cancelled, no memory, the device is lost.
-  virtual Result<light::DirectLight> direct_light(const TraceScene& in,
-                                                  const light::DirectParams& params,
-                                                  Progress& progress) = 0;
+  /// What lights places of the scene until forget(); null where it does not know all that shines
+  /// there: direct light is the processor's then. Errors: no memory, the device is lost.
+  virtual Result<light::LightDevice*> light_device(const TraceScene& in) = 0;
 
   /// trace_hits(), but that the hits stay on the device until forget(), and sweep() has what they
   /// bring. Some elements; 1 to 65535 samples; `hits` as no_hits() gives

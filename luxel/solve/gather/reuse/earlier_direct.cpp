@@ -68,8 +68,8 @@ Status update_direct(const light::TexelScene& in, const light::SupersampleParams
   const std::vector<uint32_t> which = touched(in, earlier.rays);
   if (which.empty()) return {};
   for (const uint32_t i : which) earlier.levels.level[i] = earlier.levels.averaged[i] = 0;
-  LUXEL_TRY_STATUS(light::direct_light_again({in.scene, in.elements, in.lights, in.tracer}, which,
-                                             params.direct, earlier.direct, progress));
+  LUXEL_TRY_STATUS(light::direct_light_again(light::lit_elements(in), which, params.direct,
+                                             earlier.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
             light::supersample(in, which, params, earlier.direct, progress));
   earlier.direct.rays += averaged.rays;

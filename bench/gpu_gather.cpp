@@ -59,7 +59,7 @@ Result<Swept> sweep_on_processor(const gather::RadiosityMap& map, const gather::
 
 /// The fastest of sweeps that take `least_s` together.
 Result<Swept> sweep_on_device(gpu::Commands& commands, device::LandedRays& rays,
-                              const gather::RadiosityMap& map, double least_s) {
+                              const gather::RadiosityMap& map, int samples, double least_s) {
   std::vector<device::DeviceGathered> gathered(rays.element_count);
   Swept out;
   out.seconds = INFINITY;
@@ -69,7 +69,7 @@ Result<Swept> sweep_on_device(gpu::Commands& commands, device::LandedRays& rays,
     out.seconds = std::min(out.seconds, seconds);
   } while (seconds_since(start) < least_s);
   for (const device::DeviceGathered& g : gathered)
-    out.light.push_back(luminance(g.sum) / float(rays.samples));
+    out.light.push_back(luminance(g.sum) / float(samples));
   return out;
 }
 
@@ -130,16 +130,17 @@ Status measure_gather_in(const std::string& name, scene::Scene loaded, const gpu
 
   LUXEL_TRY(const trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p->scene));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
+  const std::vector<uint16_t> target(m.elements, uint16_t(m.samples));
   // The second time counts.
   for (int k = 0; k < 2; ++k) {
     gather::TracedHits hits = gather::no_hits(p->elements.size());
     m.landed = {};
     const auto begin = Clock::now();
-    LUXEL_TRY(device::LandedRays landed,
-              device::land_rays({tracer, commands, in}, {.samples = m.samples}, params, hits,
-                                m.landed, progress));
+    LUXEL_TRY(device::LandedRays landed, device::begin_rays({tracer, commands, in}, params));
+    LUXEL_TRY_STATUS(device::land_round({tracer, commands, in}, target, {}, params, landed, hits,
+                                        m.landed, progress));
     m.round_s = seconds_since(begin), m.left_open = landed.left_open;
-    LUXEL_TRY(m.device, sweep_on_device(commands, landed, map, kSecondsOfSweeps));
+    LUXEL_TRY(m.device, sweep_on_device(commands, landed, map, m.samples, kSecondsOfSweeps));
   }
   add_row(name, m, table);
   return {};

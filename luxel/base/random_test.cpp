@@ -60,6 +60,18 @@ TEST(SobolOwen2d, LiesInTheEighthsThatAreSaid) {
   }
 }
 
+TEST(SobolOwen2d, HasOnePointOfABlockInEachOf64Parts) {
+  for (const uint32_t block : {0u, 1u, 2u, 77u, 1023u, 130000u})
+    for (uint32_t x = 0; x < 8; ++x)
+      for (uint32_t y = 0; y < 8; ++y) {
+        const uint32_t index = both::sample_of_eighths(block, x, y);
+        ASSERT_EQ(index / 64, block);
+        const SobolEighth at = sobol_eighth(index);
+        ASSERT_EQ(at.x, x);
+        ASSERT_EQ(at.y, y);
+      }
+}
+
 TEST(SobolOwen2d, SeedsGiveDifferentPoints) {
   EXPECT_NE(sobol_owen_2d(1, 1).x, sobol_owen_2d(1, 2).x);
   EXPECT_NE(sobol_owen_2d(1, 1).y, sobol_owen_2d(1, 2ull << 32).y);

@@ -24,13 +24,13 @@ class FailingDevice final : public gather::RayDevice {
   explicit FailingDevice(ErrorCode code, bool traces = false) : code_(code), traces_(traces) {}
   Status begin(const gather::TraceScene&) override { return {}; }
   Result<light::LightDevice*> light_device(const gather::TraceScene&) override { return nullptr; }
-  Status trace(const gather::TraceScene&, int samples, const gather::TraceParams&,
-               gather::TracedHits& hits, Progress& progress) override {
+  Status trace(const gather::TraceScene&, std::span<const uint16_t> target,
+               const gather::TraceParams&, gather::TracedHits& hits, Progress& progress) override {
     ++traced;
     if (!traces_) return fail(code_, "the cable is out");
     progress.begin("trace rays", 0);
     for (size_t i = 0; i < hits.size(); ++i)
-      hits.samples[i] = hits.counted[i] = hits.escaped[i] = uint16_t(samples);
+      hits.samples[i] = hits.counted[i] = hits.escaped[i] = target[i];
     return {};
   }
   Status sweep(const gather::RadiosityMap&, std::span<gather::Gathered>) override {

@@ -11,12 +11,13 @@ namespace {
 
 /// Push in sweep.comp.
 struct SweepPush {
-  VkDeviceAddress map, hits, more, ends, gathered;
-  uint32_t element_count, samples, map_stride;
-  uint32_t first_tile, first_group = 0;
-  uint32_t unused = 0;
+  VkDeviceAddress map, gathered, counted_rounds;
+  VkDeviceAddress more, ends;
+  VkDeviceAddress slots, first_row, hits;
+  uint32_t slot_count, map_stride, round;
+  uint32_t first_group = 0;
 };
-static_assert(sizeof(SweepPush) == 64);
+static_assert(sizeof(SweepPush) == 80);
 
 Status make_room(const gpu::Device& device, const gather::RadiosityMap& map, LandedRays& rays) {
   if (rays.gathered.size == 0) {
@@ -44,20 +45,25 @@ Result<double> sweep(gpu::Commands& commands, LandedRays& rays, const gather::Ra
   LUXEL_TRY_STATUS(make_room(commands.device(), map, rays));
   std::memcpy(rays.map_sent.mapped, map.texels.data(), rays.map_sent.size);
   LUXEL_TRY_STATUS(gpu::copy_bytes(commands, rays.map_sent, rays.map, rays.map.size));
+  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer c) {
+    gpu::full_barrier(commands.device(), c);
+    commands.device().vk.vkCmdFillBuffer(c, rays.gathered.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+  }));
+  SweepPush push{.map = rays.map.address,
+                 .gathered = rays.gathered.address,
+                 .counted_rounds = rays.counted_rounds.address,
+                 .map_stride = map.stride};
   double seconds = 0;
-  for (const LandedChunk& chunk : rays.chunks) {
-    const SweepPush push{.map = rays.map.address,
-                         .hits = chunk.hits.address,
-                         .more = rays.more.address,
-                         .ends = rays.ends.address,
-                         .gathered = rays.gathered.address,
-                         .element_count = uint32_t(rays.element_count),
-                         .samples = rays.samples,
-                         .map_stride = map.stride,
-                         .first_tile = uint32_t(chunk.first_tile)};
-    LUXEL_TRY(const double took,
-              gpu::run_groups(commands, rays.sweep, push, chunk.tile_count, rays.sweep_piece));
-    seconds += took;
+  for (const LandedRound& round : rays.rounds) {
+    push.more = round.more.address, push.ends = round.ends.address;
+    for (const LandedChunk& chunk : round.chunks) {
+      push.slots = chunk.slots.address, push.first_row = chunk.first_row.address;
+      push.hits = chunk.hits.address, push.slot_count = uint32_t(chunk.slot_count);
+      LUXEL_TRY(const double took,
+                gpu::run_groups(commands, rays.sweep, push, chunk.tile_count, rays.sweep_piece));
+      seconds += took;
+    }
+    ++push.round;
   }
   LUXEL_TRY_STATUS(gpu::copy_bytes(commands, rays.gathered, rays.to_host, rays.gathered.size));
   std::memcpy(out.data(), rays.to_host.mapped, rays.gathered.size);

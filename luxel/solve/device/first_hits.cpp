@@ -10,7 +10,7 @@ namespace {
 
 struct HitsPush {
   trace::DeviceWorld world;
-  VkDeviceAddress elements, plain, hits;
+  VkDeviceAddress elements, hits;
   uint32_t seed_low, seed_high;
   uint32_t element_count, samples;
   uint32_t first_group = 0;
@@ -29,7 +29,7 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
   const gpu::Device& device = tracer.device();
   FirstHits out;
   out.element_count = n, out.params = params;
-  LUXEL_TRY(out.from, element_buffers(commands, elements, diagonal_m, params.samples));
+  LUXEL_TRY(out.elements, upload_elements(commands, elements, diagonal_m));
   LUXEL_TRY(out.hits,
             gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(trace::DeviceHit),
                              gpu::Access::device, "the buffer of hits"));
@@ -46,8 +46,7 @@ Result<double> trace_first_hits(const trace::DeviceRayTracer& tracer, gpu::Comma
                                 FirstHits& hits) {
   const uint64_t seed = gather::seed_of_all_rays(hits.params.seed);
   const HitsPush push{.world = tracer.world(),
-                      .elements = hits.from.elements.address,
-                      .plain = hits.from.samples.address,
+                      .elements = hits.elements.address,
                       .hits = hits.hits.address,
                       .seed_low = uint32_t(seed),
                       .seed_high = uint32_t(seed >> 32),

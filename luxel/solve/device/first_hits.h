@@ -1,7 +1,7 @@
 // Gather's rays on a graphics device: made there, traced there, and what they meet kept there.
 #pragma once
 
-#include "luxel/solve/device/element_buffers.h"
+#include "luxel/solve/device/device_elements.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
 
 namespace luxel::device {
@@ -15,7 +15,7 @@ struct FirstHitsParams {
 struct FirstHits {
   size_t element_count = 0;
   FirstHitsParams params;
-  ElementBuffers from;
+  gpu::Buffer elements;
   gpu::Buffer hits;  ///< trace::DeviceHit, at index_of(); filled by trace_first_hits()
   gpu::Pipeline pipeline;
   gpu::PieceSize piece{64};  ///< of groups: each has the rays of 64 elements in one cell

@@ -36,16 +36,19 @@ class GatherDevice final : public gather::RayDevice {
     return &direct_.emplace(std::move(direct));
   }
 
-  Status trace(const gather::TraceScene& in, int samples, const gather::TraceParams& params,
-               gather::TracedHits& hits, Progress& progress) override {
+  Status trace(const gather::TraceScene& in, std::span<const uint16_t> target,
+               const gather::TraceParams& params, gather::TracedHits& hits,
+               Progress& progress) override {
     LUXEL_CHECK(tracer_);
-    rays_.reset();
+    const DeviceScene scene{*tracer_, *commands_, in};
+    if (hits.rounds.empty()) {
+      rays_.reset();
+      LUXEL_TRY(LandedRays rays, begin_rays(scene, params));
+      rays_.emplace(std::move(rays));
+      gathered_.resize(in.elements.size());
+    }
     LandedSeconds seconds;
-    LUXEL_TRY(LandedRays rays, land_rays({*tracer_, *commands_, in}, {.samples = samples}, params,
-                                         hits, seconds, progress));
-    rays_.emplace(std::move(rays));
-    gathered_.resize(in.elements.size());
-    return {};
+    return land_round(scene, target, {}, params, *rays_, hits, seconds, progress);
   }
 
   Status sweep(const gather::RadiosityMap& map, std::span<gather::Gathered> out) override {

@@ -5,10 +5,10 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
-#include "luxel/gpu/pieces.h"
-#include "luxel/solve/device/device_surroundings.h"
+#include "luxel/solve/device/device_elements.h"
 #include "luxel/solve/device/landings.h"
 #include "luxel/solve/device/open_list.h"
+#include "luxel/solve/device/ray_slots.h"
 #include "luxel/solve/device/shaders/escaped_light.comp.h"
 #include "luxel/solve/device/shaders/landed_rays_binary.comp.h"
 #include "luxel/solve/device/shaders/landed_rays_wide.comp.h"
@@ -22,54 +22,63 @@ namespace {
 /// which leaves room for those of the buffer that goes beyond this.
 constexpr uint64_t kMostOpen = (uint64_t(1) << 31) - 1;
 
-// Structs of landed_rays.glsl and escaped_light.comp.
+// Structs of ray_slots.glsl, landed_rays.glsl and escaped_light.comp.
+
+struct RaySeeds {
+  uint32_t plain_low, plain_high, guided_low, guided_high;
+};
+
+RaySeeds ray_seeds(uint64_t seed) {
+  const uint64_t plain = gather::seed_of_all_rays(seed),
+                 guided = gather::seed_of_all_rays(gather::seed_of_guided_rays(seed));
+  return {uint32_t(plain), uint32_t(plain >> 32), uint32_t(guided), uint32_t(guided >> 32)};
+}
 
 struct EndCounts {
-  uint32_t escaped = 0, dark_back = 0, lit_back = 0;
+  uint32_t rays = 0, escaped = 0, dark_back = 0, lit_back = 0;
 };
 
 struct Setup {
   trace::DeviceWorld world;
-  VkDeviceAddress elements, plain, landings, mixed, counts, open;
-  uint32_t seed_low, seed_high;
-  uint32_t element_count, samples, resolution, has_mixed;
+  VkDeviceAddress elements, landings, mixed, shares;
+  VkDeviceAddress slots, first_row, counts, open;
+  RaySeeds seeds;
+  uint32_t slot_count, resolution, has_mixed, unused = 0;
 };
-static_assert(sizeof(Setup) == 40 + 48 + 24);
+static_assert(sizeof(Setup) == 40 + 64 + 16 + 16);
 
 struct LandPush {
   VkDeviceAddress setup, hits;
-  uint32_t first_tile, first_group = 0;
+  uint32_t first_group = 0, unused = 0;
 };
 
 struct LightPush {
-  VkDeviceAddress around, elements, plain, hits, light;
-  uint32_t seed_low, seed_high;
-  uint32_t element_count, samples;
-  uint32_t first_tile, first_group = 0;
+  VkDeviceAddress around, elements, shares;
+  VkDeviceAddress slots, first_row, hits, light;
+  RaySeeds seeds;
+  uint32_t slot_count, first_group = 0;
 };
-static_assert(sizeof(LightPush) == 64 && sizeof(gather::EscapedLight) == 20);
+static_assert(sizeof(LightPush) == 80 && sizeof(gather::EscapedLight) == 20);
 
-/// What a round of rays needs on the device.
+/// A round on its way.
 struct Round {
   const DeviceScene& scene;
-  uint32_t samples;
-  uint64_t seed;          ///< of all elements
-  size_t tiles_of_chunk;  ///< at most
-  ElementBuffers from{};
-  gpu::Buffer landings{}, mixed{};
-  gpu::Buffer counts{};  ///< EndCounts of a chunk's elements
+  const gather::SceneOfRays& on_processor;
+  RaySeeds seeds;
+  LandedRays& rays;
+  gather::TracedHits& hits;
+  gpu::Buffer shares{};
+  // Of the chunk that has the most slots.
+  gpu::Buffer counts{};  ///< EndCounts of each
+  gpu::Buffer light{};   ///< gather::EscapedLight of each, where light comes from around
   OpenList open{};
-  gpu::Pipeline land{};
-  gpu::PieceSize land_piece{kTogether}, escaped_piece{kTogether};
-  // Only where light comes from around.
-  DeviceSurroundings around{};
-  gpu::Buffer light{};  ///< gather::EscapedLight of a chunk's elements
-  gpu::Pipeline escaped{};
+  // Hits of rays that the processor has ended, element after element, and one past each element's
+  // last one.
+  std::vector<gather::StoredHit> more{};
+  std::vector<uint32_t> more_ends{};
 
+  gpu::Commands& commands() const { return scene.commands; }
   const gpu::Device& device() const { return scene.tracer.device(); }
-  size_t element_count() const { return scene.in.elements.size(); }
-  size_t elements_of_chunk() const { return tiles_of_chunk * kTogether; }
-  bool is_dark_around() const { return light.size == 0; }
 };
 
 /// The first `count` values of a buffer.
@@ -89,84 +98,72 @@ bool shines(const scene::Scene& scene, const light::Surroundings& around) {
   return !scene.environment.empty() || max_component(around.background) > 0;
 }
 
-Status prepare_surroundings(Round& round) {
-  const scene::Scene& scene = round.scene.in.scene;
-  const light::Surroundings& around = round.scene.in.lights.around;
-  if (!shines(scene, around)) return {};
-  LUXEL_TRY(round.around, upload_surroundings(round.scene.commands, scene.environment, around));
-  LUXEL_TRY(round.light, gpu::make_buffer(round.device(),
-                                          round.elements_of_chunk() * sizeof(gather::EscapedLight),
-                                          gpu::Access::device, "the buffer of the sky's light"));
-  LUXEL_TRY(round.escaped, gpu::make_compute_pipeline(round.device(), escaped_light_comp,
-                                                      {sizeof(LightPush), {}}));
+/// Room for what a round finds of its largest chunk.
+Status make_room(const RoundSlots& slots, const LandParams& land, Round& round) {
+  uint64_t most_slots = 0, most_places = 0;
+  for (const SlotChunk& chunk : slots.chunks) {
+    most_slots = std::max<uint64_t>(most_slots, chunk.slots.size());
+    most_places = std::max<uint64_t>(most_places, chunk.first_row.back() * uint64_t(kTogether));
+  }
+  LUXEL_TRY(round.counts, gpu::make_buffer(round.device(), most_slots * sizeof(EndCounts),
+                                           gpu::Access::device, "the buffer of counts"));
+  if (!round.rays.is_dark_around) {
+    LUXEL_TRY(round.light,
+              gpu::make_buffer(round.device(), most_slots * sizeof(gather::EscapedLight),
+                               gpu::Access::device, "the buffer of the sky's light"));
+  }
+  LUXEL_TRY(round.open,
+            make_open_list(round.device(), std::max<uint64_t>(most_places / land.open_share, 1)));
+  LUXEL_TRY(round.shares,
+            gpu::uploaded_or_one(round.commands(), slots.shares, "the buffer of rays' shares"));
   return {};
 }
 
-Status prepare(const gather::SceneOfRays& rays, Round& round) {
-  const gather::TraceScene& in = round.scene.in;
-  gpu::Commands& commands = round.scene.commands;
-  LUXEL_TRY(round.from, element_buffers(commands, in.elements, rays.diagonal_m(), round.samples));
-  const std::vector<Landing> landings = landings_of(rays.rays());
-  LUXEL_TRY(round.landings, gpu::uploaded_or_one(commands, landings, "the buffer of the lightmap"));
-  std::span<const uint64_t> mixed;
-  if (in.sides) mixed = in.sides->mixed;
-  LUXEL_TRY(round.mixed,
-            gpu::uploaded_or_one(commands, mixed, "the buffer of walls in the lightmap"));
-  LUXEL_TRY(round.counts,
-            gpu::make_buffer(round.device(), round.elements_of_chunk() * sizeof(EndCounts),
-                             gpu::Access::device, "the buffer of counts"));
-  const bool wide = round.scene.tracer.kind() == trace::HierarchyKind::wide;
-  LUXEL_TRY(round.land,
-            gpu::make_compute_pipeline(
-                round.device(),
-                wide ? gpu::Spirv(landed_rays_wide_comp) : gpu::Spirv(landed_rays_binary_comp),
-                {sizeof(LandPush), {}}, {uint32_t(round.scene.tracer.lets_light_through())}));
-  return prepare_surroundings(round);
-}
-
-/// The buffer of what shaders are told of the round.
-Result<gpu::Buffer> setup_of(const Round& round) {
-  const bool has_mixed = round.scene.in.sides && !round.scene.in.sides->mixed.empty();
+/// The buffer of what shaders are told of a chunk.
+Result<gpu::Buffer> setup_of(const LandedChunk& chunk, const Round& round) {
+  const transport::OwnSides* sides = round.scene.in.sides;
   const Setup values{.world = round.scene.tracer.world(),
-                     .elements = round.from.elements.address,
-                     .plain = round.from.samples.address,
-                     .landings = round.landings.address,
-                     .mixed = round.mixed.address,
+                     .elements = round.rays.elements.address,
+                     .landings = round.rays.landings.address,
+                     .mixed = round.rays.mixed.address,
+                     .shares = round.shares.address,
+                     .slots = chunk.slots.address,
+                     .first_row = chunk.first_row.address,
                      .counts = round.counts.address,
                      .open = round.open.rays.address,
-                     .seed_low = uint32_t(round.seed),
-                     .seed_high = uint32_t(round.seed >> 32),
-                     .element_count = uint32_t(round.element_count()),
-                     .samples = round.samples,
+                     .seeds = round.seeds,
+                     .slot_count = uint32_t(chunk.slot_count),
                      .resolution = uint32_t(round.scene.in.atlas.resolution),
-                     .has_mixed = has_mixed};
-  return gpu::uploaded_or_one(round.scene.commands, std::span(&values, 1),
-                              "the buffer of a round's settings");
+                     .has_mixed = sides && !sides->mixed.empty()};
+  return gpu::uploaded(round.commands(), std::as_bytes(std::span(&values, 1)),
+                       "the buffer of a round's settings");
 }
 
-/// Counts of a chunk's elements and the list of open rays begin anew.
-Status reset(const Round& round) {
-  return round.scene.commands.run([&](VkCommandBuffer c) {
+/// Hits and counts of a chunk, and the list of open rays, begin anew. What is 0 landed nowhere.
+Status reset(const LandedChunk& chunk, const Round& round) {
+  const auto& vk = round.device().vk;
+  return round.commands().run([&](VkCommandBuffer c) {
     gpu::full_barrier(round.device(), c);
-    round.device().vk.vkCmdFillBuffer(c, round.counts.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+    vk.vkCmdFillBuffer(c, chunk.hits.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+    vk.vkCmdFillBuffer(c, round.counts.buffer.get(), 0, VK_WHOLE_SIZE, 0);
     record_emptying(round.device(), c, round.open);
   });
 }
 
 /// Traces a chunk's rays once, and returns the seconds.
 Result<double> trace_chunk(const LandedChunk& chunk, Round& round) {
-  LUXEL_TRY_STATUS(reset(round));
-  LUXEL_TRY(const gpu::Buffer setup, setup_of(round));
-  const LandPush push{setup.address, chunk.hits.address, uint32_t(chunk.first_tile)};
-  return gpu::run_groups(round.scene.commands, round.land, push, chunk.tile_count * gather::kCells,
-                         round.land_piece);
+  LUXEL_TRY_STATUS(reset(chunk, round));
+  LUXEL_TRY(const gpu::Buffer setup, setup_of(chunk, round));
+  return gpu::run_groups(round.commands(), round.rays.land,
+                         LandPush{setup.address, chunk.hits.address},
+                         chunk.tile_count * gather::kCells, round.rays.land_piece);
 }
 
 /// Finds where a chunk's rays land, and which ones the device leaves open. `seconds` gets those of
 /// the device.
 Result<std::vector<DeviceOpenRay>> land_chunk(const LandedChunk& chunk, Round& round,
                                               double& seconds) {
-  gpu::Commands& commands = round.scene.commands;
+  gpu::Commands& commands = round.commands();
   LUXEL_TRY(const double took, trace_chunk(chunk, round));
   LUXEL_TRY(const uint32_t count, open_count(commands, round.open));
   seconds += took;
@@ -184,135 +181,173 @@ Result<std::vector<DeviceOpenRay>> land_chunk(const LandedChunk& chunk, Round& r
 
 /// Adds up what a chunk's escaped rays see. Returns the seconds.
 Result<double> light_of_escaped(const LandedChunk& chunk, Round& round) {
-  if (round.is_dark_around()) return 0.0;
-  const LightPush push{.around = round.around.values.address,
-                       .elements = round.from.elements.address,
-                       .plain = round.from.samples.address,
+  if (round.rays.is_dark_around) return 0.0;
+  const LightPush push{.around = round.rays.around.values.address,
+                       .elements = round.rays.elements.address,
+                       .shares = round.shares.address,
+                       .slots = chunk.slots.address,
+                       .first_row = chunk.first_row.address,
                        .hits = chunk.hits.address,
                        .light = round.light.address,
-                       .seed_low = uint32_t(round.seed),
-                       .seed_high = uint32_t(round.seed >> 32),
-                       .element_count = uint32_t(round.element_count()),
-                       .samples = round.samples,
-                       .first_tile = uint32_t(chunk.first_tile)};
-  return gpu::run_groups(round.scene.commands, round.escaped, push, chunk.tile_count,
-                         round.escaped_piece);
+                       .seeds = round.seeds,
+                       .slot_count = uint32_t(chunk.slot_count)};
+  return gpu::run_groups(round.commands(), round.rays.escaped, push, chunk.tile_count,
+                         round.rays.escaped_piece);
 }
 
-/// Notes what the rays of elements [begin, end) met, of those that the device has not left open,
-/// and what they saw outside.
-Status take_counts(const Round& round, size_t begin, size_t end, gather::TracedHits& hits) {
-  const size_t n = end - begin;
-  gpu::Commands& commands = round.scene.commands;
-  LUXEL_TRY(const auto counts, downloaded<EndCounts>(commands, round.counts, n));
-  std::vector<gather::EscapedLight> light;
-  if (!round.is_dark_around()) {
-    LUXEL_TRY(light, downloaded<gather::EscapedLight>(commands, round.light, n));
+/// Adds what the rays of an element met and saw outside, of those that the device has not left
+/// open. What was there before is of the first half now.
+void take_element(const RaySlot& slot, const EndCounts& counts, const gather::EscapedLight& light,
+                  Round& round) {
+  gather::TracedHits& hits = round.hits;
+  const size_t i = slot.element;
+  hits.samples[i] = uint16_t(slot.end), hits.last_round[i] = uint8_t(round.rays.rounds.size());
+  hits.sky_first_less_second[i] = luminance(hits.sky[i]);
+  hits.sky[i] += light.sum, hits.sky_luminance2[i] += light.luminance2;
+  hits.sky_first_less_second[i] += luminance(light.sum) - 2 * light.second_luminance;
+  hits.rays += counts.rays;
+  if (gather::is_guided(hits, i)) return;  // they do not tell where the element lies
+  const auto add = [](uint32_t count, uint16_t& to) { to = uint16_t(to + count); };
+  hits.counted[i] = hits.samples[i];
+  add(counts.escaped, hits.escaped[i]), add(counts.dark_back, hits.met_back[i]);
+  add(counts.lit_back, hits.met_double_sided_back[i]);
+}
+
+Status take_counts(std::span<const RaySlot> slots, Round& round) {
+  LUXEL_TRY(const auto counts, downloaded<EndCounts>(round.commands(), round.counts, slots.size()));
+  std::vector<gather::EscapedLight> light(slots.size());
+  if (!round.rays.is_dark_around) {
+    LUXEL_TRY(light, downloaded<gather::EscapedLight>(round.commands(), round.light, slots.size()));
   }
-  for (size_t k = 0; k < n; ++k) {
-    const size_t i = begin + k;
-    hits.samples[i] = hits.counted[i] = uint16_t(round.samples);
-    hits.escaped[i] = uint16_t(counts[k].escaped);
-    hits.met_back[i] = uint16_t(counts[k].dark_back);
-    hits.met_double_sided_back[i] = uint16_t(counts[k].lit_back);
-    if (light.empty()) continue;
-    hits.sky[i] = light[k].sum, hits.sky_luminance2[i] = light[k].luminance2;
-    hits.sky_first_less_second[i] = luminance(light[k].sum) - 2 * light[k].second_luminance;
-  }
-  hits.rays += n * round.samples;
+  for (size_t k = 0; k < slots.size(); ++k) take_element(slots[k], counts[k], light[k], round);
   return {};
 }
 
-/// Hits of rays that the processor has ended, element after element.
-struct MoreHits {
-  std::vector<gather::StoredHit> hits;
-  std::vector<uint32_t> ends;  ///< one past each element's last one
-
-  void add(std::span<const gather::HitTile> tiles) {
-    for (const gather::HitTile& tile : tiles) {
-      for (const uint32_t end : tile.end) ends.push_back(uint32_t(hits.size()) + end);
-      hits.insert(hits.end(), tile.entries.begin(), tile.entries.end());
-    }
-  }
-};
-
-/// Everything about the rays of a chunk. Errors: as land_rays().
-Status finish_chunk(const gather::SceneOfRays& rays, LandedChunk& chunk, Round& round,
-                    gather::TracedHits& hits, LandedRays& out, MoreHits& more,
-                    LandedSeconds& seconds, Progress& progress) {
-  const size_t begin = chunk.first_tile * kTogether;
-  const size_t end = std::min(begin + chunk.tile_count * kTogether, round.element_count());
-  const uint64_t places = chunk.tile_count * kTogether * round.samples;
-  LUXEL_TRY(chunk.hits, gpu::make_buffer(round.device(), places * sizeof(gather::StoredHit),
-                                         gpu::Access::device, "the buffer of hits"));
-  LUXEL_TRY(const std::vector<DeviceOpenRay> open, land_chunk(chunk, round, seconds.device));
-  LUXEL_TRY(const double light_s, light_of_escaped(chunk, round));
-  seconds.device += light_s;
-  LUXEL_TRY_STATUS(take_counts(round, begin, end, hits));
-  const auto start = Clock::now();
+/// Ends the rays of a chunk's elements that the device has left open.
+Status end_open(const SlotChunk& slots, std::span<const DeviceOpenRay> open, Round& round,
+                Progress& progress) {
+  // Elements before the chunk without any rays have no more hits.
+  round.more_ends.resize(slots.begin, uint32_t(round.more.size()));
   LUXEL_TRY(const std::vector<gather::HitTile> ended,
-            gather::end_open_rays(rays, round.scene.in, begin, end,
-                                  in_order(open, begin, end, round.scene.tracer), hits, progress));
-  more.add(ended);
-  seconds.processor += seconds_since(start);
-  out.left_open += open.size();
-  if (out.left_open <= kMostOpen) return {};
+            gather::end_open_rays(round.on_processor, round.scene.in, slots.begin, slots.end,
+                                  in_order(open, slots.begin, slots.end, round.scene.tracer),
+                                  round.hits, progress));
+  for (const gather::HitTile& tile : ended) {
+    for (const uint32_t end : tile.end)
+      round.more_ends.push_back(uint32_t(round.more.size()) + end);
+    round.more.insert(round.more.end(), tile.entries.begin(), tile.entries.end());
+  }
+  round.rays.left_open += open.size();
+  if (round.more.size() + open.size() <= kMostOpen) return {};
   return fail(ErrorCode::unsupported,
               "more than {} rays on the device end where only the processor knows what they bring: "
               "bake with fewer samples or a smaller resolution, or without the device",
               kMostOpen);
 }
 
-/// Sends the device the hits of rays that the processor has ended.
-Status keep_more(const Round& round, const MoreHits& more, LandedRays& out) {
-  LUXEL_CHECK(more.ends.size() == round.element_count() && more.hits.size() <= UINT32_MAX);
-  gpu::Commands& commands = round.scene.commands;
+/// Everything about the rays of a chunk. Errors: as land_round().
+Result<LandedChunk> finish_chunk(const SlotChunk& slots, Round& round, LandedSeconds& seconds,
+                                 Progress& progress) {
+  gpu::Commands& commands = round.commands();
+  LandedChunk out{slots.slots.size(), slots.first_row.size() - 1, {}, {}, {}};
+  LUXEL_TRY(out.slots, gpu::uploaded_or_one(commands, slots.slots, "the buffer of slots of rays"));
+  LUXEL_TRY(out.first_row, gpu::uploaded_or_one(commands, slots.first_row, "the buffer of rows"));
+  const uint64_t places = slots.first_row.back() * uint64_t(kTogether);
+  LUXEL_TRY(out.hits, gpu::make_buffer(round.device(), places * sizeof(gather::StoredHit),
+                                       gpu::Access::device, "the buffer of hits"));
+  LUXEL_TRY(const std::vector<DeviceOpenRay> open, land_chunk(out, round, seconds.device));
+  LUXEL_TRY(const double light_s, light_of_escaped(out, round));
+  seconds.device += light_s;
+  LUXEL_TRY_STATUS(take_counts(slots.slots, round));
+  const auto start = Clock::now();
+  LUXEL_TRY_STATUS(end_open(slots, open, round, progress));
+  seconds.processor += seconds_since(start);
+  return out;
+}
+
+/// Sends the device what the processor has found of a round.
+Status keep_round(Round& round, LandedRound& out) {
   constexpr std::string_view kWhat = "the buffer of hits";
-  LUXEL_TRY(out.ends, gpu::uploaded_or_one(commands, more.ends, kWhat));
-  LUXEL_TRY(out.more, gpu::uploaded_or_one(commands, more.hits, kWhat));
+  round.more_ends.resize(round.rays.element_count, uint32_t(round.more.size()));
+  LUXEL_TRY(out.ends, gpu::uploaded_or_one(round.commands(), round.more_ends, kWhat));
+  LUXEL_TRY(out.more, gpu::uploaded_or_one(round.commands(), round.more, kWhat));
+  std::vector<uint32_t> counted;
+  for (size_t i = 0; i < round.rays.element_count; ++i)
+    counted.push_back(uint32_t(round.hits.first_round[i]) | uint32_t(round.hits.last_round[i])
+                                                                << 8);
+  LUXEL_TRY(round.rays.counted_rounds,
+            gpu::uploaded_or_one(round.commands(), counted, "the buffer of counted rounds"));
   return {};
 }
 
-/// Tiles of a chunk of hits: whole ones of gather's own.
-size_t tiles_of_chunk(const LandParams& land, size_t tiles) {
-  constexpr size_t kOfGather = gather::kTileElements / kTogether;
-  static_assert(kOfGather * kTogether == gather::kTileElements);
-  const size_t wanted = land.rays_of_chunk / (kTogether * uint64_t(land.samples));
-  return std::min(std::max(wanted / kOfGather, size_t(1)) * kOfGather, tiles);
+/// A work group with more rays in each slot takes so much longer.
+void fit_pieces(const RoundSlots& slots, LandedRays& rays) {
+  uint32_t most = 1;
+  for (const SlotChunk& chunk : slots.chunks) most = std::max(most, chunk.slots.front().places);
+  if (rays.places_of_piece > 0)
+    for (gpu::PieceSize* piece : {&rays.land_piece, &rays.escaped_piece})
+      piece->items = std::max<size_t>(piece->items * rays.places_of_piece / most, 1);
+  rays.places_of_piece = most;
 }
 
 }  // namespace
 
-Result<LandedRays> land_rays(const DeviceScene& scene, const LandParams& land,
-                             const gather::TraceParams& params, gather::TracedHits& hits,
-                             LandedSeconds& seconds, Progress& progress) {
-  const size_t n = scene.in.elements.size();
-  const auto samples = uint64_t(land.samples);
-  LUXEL_CHECK(n > 0 && samples >= 1 && samples <= 65535 && hits.size() == n);
-  LUXEL_CHECK(!params.parts && !params.keep && !params.earlier && !params.layers);
-  LUXEL_CHECK(!scene.in.tracer.has_tints());
+Result<LandedRays> begin_rays(const DeviceScene& scene, const gather::TraceParams& params) {
+  const gather::TraceScene& in = scene.in;
+  gpu::Commands& commands = scene.commands;
+  LUXEL_CHECK(in.elements.size() > 0 && !in.tracer.has_tints());
+  const gather::SceneOfRays rays(in, params);
   LandedRays out;
-  out.element_count = n, out.samples = uint32_t(samples);
-  const gather::SceneOfRays rays(scene.in, params);
-  const size_t tiles = (n + kTogether - 1) / kTogether;
-  Round round{scene, uint32_t(samples), gather::seed_of_all_rays(params.seed),
-              tiles_of_chunk(land, tiles)};
-  LUXEL_TRY_STATUS(prepare(rays, round));
-  const uint64_t rays_of_chunk = round.elements_of_chunk() * samples;
-  LUXEL_TRY(round.open,
-            make_open_list(round.device(), std::max<uint64_t>(rays_of_chunk / land.open_share, 1)));
-  MoreHits more;
-  progress.begin("trace rays", n * samples);
-  for (size_t first = 0; first < tiles; first += round.tiles_of_chunk) {
-    LUXEL_TRY_STATUS(stopped(progress));
-    LandedChunk chunk{first, std::min(round.tiles_of_chunk, tiles - first), {}};
-    LUXEL_TRY_STATUS(finish_chunk(rays, chunk, round, hits, out, more, seconds, progress));
-    const size_t end = std::min((first + chunk.tile_count) * kTogether, n);
-    progress.advance((end - first * kTogether) * samples);
-    out.chunks.push_back(std::move(chunk));
-  }
-  LUXEL_TRY_STATUS(keep_more(round, more, out));
+  out.element_count = in.elements.size();
+  LUXEL_TRY(out.elements, upload_elements(commands, in.elements, rays.diagonal_m()));
+  LUXEL_TRY(out.landings,
+            gpu::uploaded_or_one(commands, landings_of(rays.rays()), "the buffer of the lightmap"));
+  std::span<const uint64_t> mixed;
+  if (in.sides) mixed = in.sides->mixed;
+  LUXEL_TRY(out.mixed,
+            gpu::uploaded_or_one(commands, mixed, "the buffer of walls in the lightmap"));
+  const bool wide = scene.tracer.kind() == trace::HierarchyKind::wide;
+  LUXEL_TRY(out.land,
+            gpu::make_compute_pipeline(
+                commands.device(),
+                wide ? gpu::Spirv(landed_rays_wide_comp) : gpu::Spirv(landed_rays_binary_comp),
+                {sizeof(LandPush), {}}, {uint32_t(scene.tracer.lets_light_through())}));
+  const light::Surroundings& around = in.lights.around;
+  out.is_dark_around = !shines(in.scene, around);
+  if (out.is_dark_around) return out;
+  LUXEL_TRY(out.around, upload_surroundings(commands, in.scene.environment, around));
+  LUXEL_TRY(out.escaped, gpu::make_compute_pipeline(commands.device(), escaped_light_comp,
+                                                    {sizeof(LightPush), {}}));
   return out;
+}
+
+Status land_round(const DeviceScene& scene, std::span<const uint16_t> target,
+                  const LandParams& land, const gather::TraceParams& params, LandedRays& rays,
+                  gather::TracedHits& hits, LandedSeconds& seconds, Progress& progress) {
+  const size_t n = rays.element_count;
+  LUXEL_CHECK(scene.in.elements.size() == n && target.size() == n && hits.size() == n);
+  LUXEL_CHECK(hits.rounds.size() == rays.rounds.size() && rays.rounds.size() < 256);
+  LUXEL_CHECK(!params.parts && !params.keep && !params.earlier && !params.layers);
+  const gather::SceneOfRays on_processor(scene.in, params);
+  Round round{scene, on_processor, ray_seeds(params.seed), rays, hits};
+  const RoundSlots slots = slots_of_round(target, hits, land.rays_of_chunk);
+  progress.begin("trace rays", slots.samples);
+  LandedRound out;
+  if (!slots.chunks.empty()) {
+    fit_pieces(slots, rays);
+    LUXEL_TRY_STATUS(make_room(slots, land, round));
+  }
+  for (const SlotChunk& chunk : slots.chunks) {
+    LUXEL_TRY_STATUS(stopped(progress));
+    LUXEL_TRY(LandedChunk landed, finish_chunk(chunk, round, seconds, progress));
+    out.chunks.push_back(std::move(landed));
+    uint64_t samples = 0;
+    for (const RaySlot& slot : chunk.slots) samples += slot.end - slot.first;
+    progress.advance(samples);
+  }
+  LUXEL_TRY_STATUS(keep_round(round, out));
+  rays.rounds.push_back(std::move(out));
+  return {};
 }
 
 }  // namespace luxel::device

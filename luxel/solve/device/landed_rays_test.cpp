@@ -54,8 +54,9 @@ uint64_t sum_of_differences(std::span<const uint16_t> a, std::span<const uint16_
 
 class LandedRaysOnDevice : public gpu::testing::OnDevice {
  protected:
-  /// Rays of `room` on the device and on the processor bring the same.
-  void expect_the_same(const gather::Room& room, trace::HierarchyKind kind, const LandParams& land);
+  /// So many rays of each element of `room` on the device and on the processor bring the same.
+  void expect_the_same(const gather::Room& room, trace::HierarchyKind kind, int samples,
+                       const LandParams& land = {});
 };
 
 // The two differ by rounding, and by rays that graze an edge: one that ends elsewhere in one of
@@ -63,27 +64,31 @@ class LandedRaysOnDevice : public gpu::testing::OnDevice {
 constexpr double kMostRms = 5e-4, kMostBias = 1e-5, kMostElsewhere = 1e-5;
 
 void LandedRaysOnDevice::expect_the_same(const gather::Room& room, trace::HierarchyKind kind,
-                                         const LandParams& land) {
+                                         int samples, const LandParams& land) {
   const transport::OwnSides sides =
       transport::find_own_sides(room.scene, room.atlas, room.map, *room.tracer);
   const gather::TraceScene in = gather::trace_scene(gather::scene_of(room), &sides);
   const gather::TraceParams params{.seed = 5, .follows_near = true};
   Progress progress;
-  const auto expected = gather::trace_hits(in, land.samples, params, progress);
+  const auto expected = gather::trace_hits(in, samples, params, progress);
   ASSERT_TRUE(expected);
   const size_t n = room.elements.size();
   const auto tracer = trace::DeviceRayTracer::build(*device_, room.scene, kind);
   ASSERT_TRUE(tracer);
   gather::TracedHits found = gather::no_hits(n);
   LandedSeconds seconds;
-  auto landed = land_rays({*tracer, *commands_, in}, land, params, found, seconds, progress);
+  auto landed = begin_rays({*tracer, *commands_, in}, params);
   ASSERT_TRUE(landed) << landed.error().message;
+  const Status status =
+      land_round({*tracer, *commands_, in}, std::vector<uint16_t>(n, uint16_t(samples)), land,
+                 params, *landed, found, seconds, progress);
+  ASSERT_TRUE(status) << status.error().message;
 
   const gather::RadiosityMap map = any_map(room, *expected);
   const Brought by_processor = swept(map, *expected);
   std::vector<DeviceGathered> gathered(n);
   ASSERT_TRUE(sweep(*commands_, *landed, map, gathered));
-  const auto per_sample = 1 / float(land.samples);
+  const auto per_sample = 1 / float(samples);
   std::vector<float> e, e2, halves, expected_e, expected_e2, expected_halves;
   for (size_t i = 0; i < n; ++i) {
     const Rgb sky = found.sky[i] * kPi;
@@ -108,7 +113,7 @@ void LandedRaysOnDevice::expect_the_same(const gather::Room& room, trace::Hierar
   EXPECT_LT(std::abs(of_light.bias), kMostBias);
   EXPECT_LT(of_squares.rms, 2 * kMostRms);
   EXPECT_LT(of_halves.rms, 20 * kMostRms) << "a small difference of large sums";
-  const auto rays = double(n) * double(land.samples);
+  const auto rays = double(n) * double(samples);
   EXPECT_LT(double(sum_of_differences(found.escaped, expected->escaped)), kMostElsewhere * rays);
   EXPECT_LT(double(sum_of_differences(found.met_back, expected->met_back)), kMostElsewhere * rays);
   EXPECT_LT(
@@ -168,15 +173,13 @@ scene::Scene walls_on_a_floor() {
 // for at first. Samples are a multiple of the number of cells, and none.
 TEST_F(LandedRaysOnDevice, BringWhatTheProcessorsBring) {
   const auto binary = trace::HierarchyKind::binary, wide = trace::HierarchyKind::wide;
-  const LandParams even{.samples = 64}, uneven{.samples = 100};
   const auto cornell = gather::lay_out(scene::cornell_box(), 64);
-  expect_the_same(*cornell, binary, even);
-  expect_the_same(*cornell, wide, {.samples = 64, .rays_of_chunk = 64 * 64 * 5});
-  expect_the_same(*gather::lay_out(blocks_under_a_sky(), 64), wide, uneven);
-  expect_the_same(*gather::lay_out(leaf_over_a_floor(false), 64), wide,
-                  {.samples = 64, .open_share = 100});
-  expect_the_same(*gather::lay_out(leaf_over_a_floor(true), 64), binary, even);
-  expect_the_same(*gather::lay_out(walls_on_a_floor(), 64), binary, uneven);
+  expect_the_same(*cornell, binary, 64);
+  expect_the_same(*cornell, wide, 64, {.rays_of_chunk = 64 * 64 * 5});
+  expect_the_same(*gather::lay_out(blocks_under_a_sky(), 64), wide, 100);
+  expect_the_same(*gather::lay_out(leaf_over_a_floor(false), 64), wide, 64, {.open_share = 100});
+  expect_the_same(*gather::lay_out(leaf_over_a_floor(true), 64), binary, 64);
+  expect_the_same(*gather::lay_out(walls_on_a_floor(), 64), binary, 100);
 }
 
 // Rays land in the same places each time, whatever order the device works in.
@@ -192,9 +195,12 @@ TEST_F(LandedRaysOnDevice, BringTheSameBitsEachTime) {
     Progress progress;
     gather::TracedHits hits = gather::no_hits(room->elements.size());
     LandedSeconds seconds;
-    auto landed = land_rays({*tracer, *commands_, in}, {.samples = 64},
-                            {.seed = 1, .follows_near = true}, hits, seconds, progress);
+    const gather::TraceParams params{.seed = 1, .follows_near = true};
+    auto landed = begin_rays({*tracer, *commands_, in}, params);
     ASSERT_TRUE(landed);
+    const std::vector<uint16_t> target(hits.size(), 64);
+    ASSERT_TRUE(land_round({*tracer, *commands_, in}, target, {}, params, *landed, hits, seconds,
+                           progress));
     gathered.emplace_back(room->elements.size());
     ASSERT_TRUE(sweep(*commands_, *landed, any_map(*room, hits), gathered.back()));
   }

@@ -63,7 +63,7 @@ std::vector<gather::OpenRay> in_order(std::span<const DeviceOpenRay> open, size_
       std::ranges::sort(own, {}, [&](uint32_t k) { return open[k].place; });
       for (size_t at = first[i]; at < first[i + 1]; ++at) {
         const DeviceOpenRay& ray = open[order[at]];
-        out[at] = {ray.element, ray.sample, tracer.hit_of(ray.hit)};
+        out[at] = {ray.element, ray.sample, ray.doublings, tracer.hit_of(ray.hit)};
       }
     }
   });

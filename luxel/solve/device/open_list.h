@@ -11,10 +11,10 @@ namespace luxel::device {
 
 /// OpenRay of landed_rays.glsl.
 struct DeviceOpenRay {
-  uint32_t element, place, sample;
+  uint32_t element, place, sample, doublings;
   trace::DeviceHit hit;
 };
-static_assert(sizeof(DeviceOpenRay) == 28);
+static_assert(sizeof(DeviceOpenRay) == 32);
 
 /// Has room for some rays. The device counts those that find none, too.
 struct OpenList {

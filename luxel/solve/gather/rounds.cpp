@@ -30,7 +30,7 @@ constexpr double kNoiseWorthAGuide = 3;
 double affordable_rays(const Progressive& light, double seconds_left) {
   const double rays = double(light.hits.rays), bounces_s = light.bounced_s * (1 + kFineOverRough);
   if (seconds_left <= 0) return 0;
-  // Where all rays were found, or a device's, some are traced to know what they take.
+  // Where all rays were found, some are traced to know what they take.
   if (light.traced_rays == 0) return kSmallestRound * rays;
   const double per_ray = light.traced_s / double(std::max<uint64_t>(light.traced_rays, 1));
   return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);

@@ -61,14 +61,13 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
 
 namespace {
 
-/// The first round of all elements, on the device. Its parts are not kept: it takes less time to
-/// trace than to read them.
-Status trace_on_device(const Request& in, int samples, TraceParams trace, TracedHits& hits,
-                       Progress& progress) {
+/// A round on the device. Its parts are not kept: it takes less time to trace than to read them.
+Status trace_on_device(const Request& in, std::span<const uint16_t> target, TraceParams trace,
+                       TracedHits& hits, Progress& progress) {
   LUXEL_CHECK(!trace.keep && !trace.earlier && !trace.layers);
   trace.parts = nullptr;
   LUXEL_TRY_STATUS(
-      in.stores.device->trace(trace_scene(in.scene, &in.sides), samples, trace, hits, progress));
+      in.stores.device->trace(trace_scene(in.scene, &in.sides), target, trace, hits, progress));
   LUXEL_TRY(HitStore none,
             HitStore::create(hits.size(), kTileElements, 0, 0, in.stores.scratch_folder));
   hits.rounds.push_back(std::move(none));
@@ -94,10 +93,8 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
   };
   const auto start = Clock::now();
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
-  const bool on_device =
-      in.stores.device && light.hits.rounds.empty() && in.scene.elements.size() > 0;
-  if (on_device) {
-    LUXEL_TRY_STATUS(trace_on_device(in, int(target.front()), trace, light.hits, progress));
+  if (in.stores.device && in.scene.elements.size() > 0) {
+    LUXEL_TRY_STATUS(trace_on_device(in, target, trace, light.hits, progress));
   } else {
     LUXEL_TRY_STATUS(
         trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
@@ -105,8 +102,7 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
   if (light.hits.rounds.size() == 1)
     light.rays_per_ray = double(light.hits.rays + light.hits.rays_kept) /
                          double(std::max<uint64_t>(sum_of(light.hits.samples), 1));
-  // A device says nothing about how long the rays of later rounds take, nor does what was kept.
-  if (on_device) return {};
+  // What was kept says nothing about how long the rays of later rounds take.
   const Progress::Snapshot stage = progress.snapshot();
   if (stage.total == stage.skipped) return {};
   light.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);

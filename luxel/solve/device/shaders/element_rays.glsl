@@ -1,4 +1,4 @@
-// The rays that an element sends out: luxel/solve/gather/rays/element_rays.h.
+// Rays of elements, sample for sample those of the processor: luxel/solve/gather/rays/element_rays.h.
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/base/both_directions.h"
 #include "luxel/base/both_sobol.h"
@@ -11,12 +11,6 @@ struct Element {
   vec3 normal, geometric_normal;
 };
 layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
-
-// Samples by the cell in which they lie before they are scrambled.
-layout(buffer_reference, scalar) readonly buffer PlainCells {
-  uint first_of[kCells + 1];
-  uint sample_of[];
-};
 
 vec3 ray_direction(Element e, uint sample_number, uvec2 seed) {
   float u = unit_float(reverse_bits(scramble_upwards(sample_number, seed.x)));
@@ -32,21 +26,29 @@ uint plain_eighths(uint seed) {
     plain |= reverse_3_bits(k) << 3 * reverse_3_bits(scramble_upwards(k, seed) & 7);
   return plain;
 }
+uvec2 all_plain_eighths(uvec2 seed) { return uvec2(plain_eighths(seed.x), plain_eighths(seed.y)); }
 
-// Cells are numbered in Morton order: x has bits 0, 2, 4.
-uint plain_cell(uint cell, uint plain_x, uint plain_y) {
+// The column and the row in which the samples of a cell lie before they are scrambled. Cells are
+// numbered in Morton order: x has bits 0, 2, 4.
+uvec2 plain_place(uint cell, uvec2 plain) {
   uint x = (cell & 1) | (cell >> 1 & 2) | (cell >> 2 & 4), y = (cell >> 1 & 1) | (cell >> 2 & 2) | (cell >> 3 & 4);
-  x = plain_x >> 3 * x & 7, y = plain_y >> 3 * y & 7;
-  return (x & 1) | (x & 2) << 1 | (x & 4) << 2 | ((y & 1) | (y & 2) << 1 | (y & 4) << 2) << 1;
+  return uvec2(plain.x >> 3 * x & 7, plain.y >> 3 * y & 7);
 }
 
-// Where the rays of a cell begin among an element's: so many lie in the cells before it.
-uint first_place(PlainCells plain, uint cell, uint samples, uint plain_x, uint plain_y) {
-  if (samples % kCells == 0) return samples / kCells * cell;
-  uint place = 0;
+// How many samples below `end` lie there. Each 64 have one.
+uint samples_below(uint end, uvec2 place) {
+  uint block = end / kCells;
+  return block + (sample_of_eighths(block, place.x, place.y) < end ? 1 : 0);
+}
+
+// Where the rays of a cell begin among those of an element's samples [first, end): so many lie in
+// the cells before it.
+uint first_of_cell(uint cell, uint first, uint end, uvec2 plain) {
+  if ((first | end) % kCells == 0) return (end - first) / kCells * cell;
+  uint count = 0;
   for (uint c = 0; c < cell; ++c) {
-    uint p = plain_cell(c, plain_x, plain_y);
-    place += plain.first_of[p + 1] - plain.first_of[p];
+    uvec2 place = plain_place(c, plain);
+    count += samples_below(end, place) - samples_below(first, place);
   }
-  return place;
+  return count;
 }

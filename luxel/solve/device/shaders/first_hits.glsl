@@ -10,7 +10,6 @@ layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };
 layout(push_constant, scalar) uniform Push {
   World world;
   Elements elements;
-  PlainCells plain;
   Hits hits;
   uvec2 seed;  // of all elements
   uint element_count, samples;
@@ -23,11 +22,12 @@ void main() {
   if (i >= element_count) return;
   Element e = elements.at[i];
   uvec2 own_seed = hash64(seed, uvec2(i, 0));
-  uint plain_x = plain_eighths(own_seed.x), plain_y = plain_eighths(own_seed.y);
-  uint place = first_place(plain, cell, samples, plain_x, plain_y);
-  uint p = plain_cell(cell, plain_x, plain_y);
-  for (uint k = plain.first_of[p]; k < plain.first_of[p + 1]; ++k, ++place) {
-    Ray ray = Ray(e.origin, ray_direction(e, plain.sample_of[k], own_seed), 0, uintBitsToFloat(0x7f800000u));
-    hits.at[(tile * samples + place) * 64 + lane] = trace(world, ray, false);
+  uvec2 plain = all_plain_eighths(own_seed), at = plain_place(cell, plain);
+  uint place = first_of_cell(cell, 0, samples, plain);
+  for (uint block = 0; block * kCells < samples; ++block) {
+    uint sample_number = sample_of_eighths(block, at.x, at.y);
+    if (sample_number >= samples) continue;
+    Ray ray = Ray(e.origin, ray_direction(e, sample_number, own_seed), 0, uintBitsToFloat(0x7f800000u));
+    hits.at[(tile * samples + place++) * 64 + lane] = trace(world, ray, false);
   }
 }

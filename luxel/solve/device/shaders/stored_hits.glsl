@@ -16,9 +16,9 @@ struct LookupPlace {
   vec2 f;
 };
 
-uvec2 store(LookupPlace p, bool second_half) {
+uvec2 store(LookupPlace p, bool second_half, uint doublings) {
   uvec2 f = uvec2(p.f * kSteps + 0.5);
-  return uvec2(f.x << 25 | f.y << 15 | (second_half ? kSecondHalf : 0) | kNoTint, p.base << 3 | f.x >> 7);
+  return uvec2(f.x << 25 | f.y << 15 | doublings << 12 | (second_half ? kSecondHalf : 0) | kNoTint, p.base << 3 | f.x >> 7);
 }
 
 LookupPlace place_of(uvec2 hit) {

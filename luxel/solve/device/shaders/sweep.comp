@@ -1,7 +1,8 @@
-// What elements gather from the map at the places where their rays have landed. A thread takes an
-// element. luxel/solve/gather/bounce/sweep.h, ../device_sweep.h
+// Adds what elements gather from the map at the places where the rays of one round have landed. A
+// thread takes a slot. luxel/solve/gather/bounce/sweep.h, ../device_sweep.h
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "ray_slots.glsl"
 #include "stored_hits.glsl"
 layout(local_size_x = 64) in;
 
@@ -12,17 +13,25 @@ struct Gathered {
   vec3 sum;
   float sum_luminance2, first_less_second;
 };
-layout(buffer_reference, scalar) writeonly buffer AllGathered { Gathered at[]; };
+layout(buffer_reference, scalar) buffer AllGathered { Gathered at[]; };
+
+// Per element, the first round that counts, and in the second byte the last one that added rays.
+layout(buffer_reference, scalar) readonly buffer CountedRounds { uint at[]; };
 
 layout(push_constant, scalar) uniform Push {
   Map map;  // gather::RadiosityMap
-  StoredHits hits;  // of the chunk
+  AllGathered gathered;
+  CountedRounds counted;
+  // Of the round.
   StoredHits more;  // of all elements, one element's after another's
   Ends ends;        // per element, one past the last of `more`
-  AllGathered gathered;
-  uint element_count, samples;
+  // Of the chunk.
+  RaySlots slots;
+  TileRows rows;
+  StoredHits hits;
+  uint slot_count;
   uint map_stride;
-  uint first_tile;  // of the chunk
+  uint round;
   uint first_group;
 };
 
@@ -40,21 +49,27 @@ vec3 lookup(uvec2 hit) {
   return tint == kNoTint ? mean : mean * unpack_tint(tint);
 }
 
-void add(uvec2 hit, inout Gathered g) {
+void add(uvec2 hit, bool is_last_round, inout Gathered g) {
   vec3 b = lookup(hit);
   float l = dot(b, vec3(0.2126, 0.7152, 0.0722));
   g.sum += b, g.sum_luminance2 += l * l;
-  g.first_less_second += (hit.x & kSecondHalf) != 0 ? -l : l;
+  g.first_less_second += is_last_round && (hit.x & kSecondHalf) != 0 ? -l : l;
 }
 
 void main() {
-  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, i = (first_tile + tile) * 64 + lane;
-  if (i >= element_count) return;
+  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, own = tile * 64 + lane;
+  if (own >= slot_count) return;
+  RaySlot slot = slots.at[own];
+  uint i = slot.element, count = counted.at[i];
+  if (round < (count & 255u)) return;
+  bool is_last_round = round == count >> 8;
   Gathered g = Gathered(vec3(0), 0, 0);
-  for (uint place = 0; place < samples; ++place) {
-    uvec2 hit = hits.at[(tile * samples + place) * 64 + lane];
-    if (hit.y != 0 || hit.x >> 15 != 0) add(hit, g);  // else it landed nowhere
+  for (uint place = 0; place < slot.places; ++place) {
+    uvec2 hit = hits.at[(rows.at[tile] + place) * 64 + lane];
+    if (hit.y != 0 || hit.x >> 15 != 0) add(hit, is_last_round, g);  // else it landed nowhere
   }
-  for (uint k = i == 0 ? 0 : ends.at[i - 1]; k < ends.at[i]; ++k) add(more.at[k], g);
-  gathered.at[i] = g;
+  for (uint k = i == 0 ? 0 : ends.at[i - 1]; k < ends.at[i]; ++k) add(more.at[k], is_last_round, g);
+  Gathered before = gathered.at[i];
+  gathered.at[i] = Gathered(before.sum + g.sum, before.sum_luminance2 + g.sum_luminance2,
+                            before.first_less_second + g.first_less_second);
 }

@@ -206,7 +206,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   }
   if (params.bounces >= 0) return std::move(bouncing.out);
   // A device has no sparse sweeps: those over all of its rays take about as long as the map needs
-  // to get there. Rays that the processor has added are all swept, too.
+  // to get there.
   const bool may_be_sparse = !hits.samples.empty() && !hits.device;
   const size_t fewest = may_be_sparse ? *std::ranges::min_element(hits.samples) : 0;
   const size_t sparse = sparsest_stride(fewest);

@@ -71,31 +71,24 @@ double update(const TracedHits& hits, size_t element, Float4 sum, Sweep& sweep) 
   return double(dot(d, d));
 }
 
-/// What an element's rays on the device bring, as gather_round() adds it up. Nothing where its rays
-/// have begun anew.
-Gathered of_device(std::span<const Gathered> on_device, const TracedHits& hits, size_t element) {
-  if (on_device.empty() || hits.first_round[element] > 0) return {};
-  Gathered out = on_device[element];
-  if (hits.last_round[element] > 0)
-    out.first_less_second = luminance({out.sum[0], out.sum[1], out.sum[2]});
-  return out;
+/// Gives an element what its rays have gathered. Returns the squared change.
+double take(const TracedHits& hits, size_t element, const Gathered& g, Sweep& sweep) {
+  sweep.variance[element] = variance_of_mean(g, hits, element);
+  sweep.split_variance[element] = split_variance(g, hits, element);
+  return update(hits, element, g.sum, sweep);
 }
 
-/// Returns the sum of squared changes of a tile's elements. `on_device`: per element, what comes
-/// before; empty: nothing.
+/// Returns the sum of squared changes of a tile's elements.
 double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits& tile,
-                  size_t first_element, std::span<const Gathered> on_device, Sweep& sweep) {
+                  size_t first_element, Sweep& sweep) {
   double change2 = 0;
   const size_t end = std::min(first_element + kTileElements, hits.size());
   for (size_t i = first_element; i < end; ++i) {
     if (!sweep.only.empty() && !sweep.only[i]) continue;
-    Gathered g = of_device(on_device, hits, i);
-    const size_t first = std::max<size_t>(hits.first_round[i], on_device.empty() ? 0 : 1);
-    for (size_t r = first; r <= hits.last_round[i]; ++r)
+    Gathered g;
+    for (size_t r = hits.first_round[i]; r <= hits.last_round[i]; ++r)
       gather_round(m, tile.of(r, i - first_element), r == hits.last_round[i], g);
-    change2 += update(hits, i, g.sum, sweep);
-    sweep.variance[i] = variance_of_mean(g, hits, i);
-    sweep.split_variance[i] = split_variance(g, hits, i);
+    change2 += take(hits, i, g, sweep);
   }
   return change2;
 }
@@ -133,21 +126,30 @@ double sweep_subsampled(const RadiosityMap& m, const TracedHits& hits,
   return change2;
 }
 
+/// A sweep by the device that has the hits. Errors: those of the device, cancelled.
+Status sweep_on_device(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep,
+                       Progress& progress) {
+  LUXEL_CHECK(sweep.stride == 1);
+  std::vector<Gathered> gathered(hits.size());
+  LUXEL_TRY_STATUS(hits.device->sweep(m, gathered));
+  parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
+    double& change2 = sweep.change2[begin / kTileElements];
+    for (size_t i = begin; i < end; ++i)
+      if (sweep.only.empty() || sweep.only[i]) change2 += take(hits, i, gathered[i], sweep);
+  });
+  return stopped(progress);
+}
+
 }  // namespace
 
 Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
   sweep.change2.assign(tile_count(hits), 0.0);
-  std::vector<Gathered> on_device;
-  if (hits.device) {
-    LUXEL_CHECK(sweep.stride == 1);
-    on_device.resize(hits.size());
-    LUXEL_TRY_STATUS(hits.device->sweep(m, on_device));
-  }
+  if (hits.device) return sweep_on_device(m, hits, sweep, progress);
   if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
       const size_t first = t * kTileElements;
       sweep.change2[t] = sweep.stride > 1 ? sweep_sparse(m, hits, tile, first, sweep)
-                                          : sweep_tile(m, hits, tile, first, on_device, sweep);
+                                          : sweep_tile(m, hits, tile, first, sweep);
     });
   LUXEL_CHECK(sweep.subsampled->stride == sweep.stride);
   return for_each_tile(

@@ -78,6 +78,9 @@ struct RayBatch {
 
 /// What the seeds of all elements' rays are made of.
 inline uint64_t seed_of_all_rays(uint64_t seed) { return seed ^ 0x6a7e; }
+/// The seed of those that follow a guide: it sets their directions apart from those that told where
+/// to look.
+inline uint64_t seed_of_guided_rays(uint64_t seed) { return hash64(seed, 0x9a1de); }
 /// The seed of an element's rays.
 inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
   return hash64(seed_of_all_rays(seed), element);

@@ -19,8 +19,8 @@ struct TraceParams;
 struct TracedHits;
 struct TraceScene;
 
-/// Works direct light out, traces the first round of rays, and keeps where they land. One solution
-/// at a time uses it. It keeps no parts, and shows nobody how the round grows.
+/// Works direct light out, traces rounds of rays, and keeps where they land. One solution at a time
+/// uses it. It keeps no parts, and shows nobody how a round grows.
 class RayDevice {
  public:
   virtual ~RayDevice() = default;
@@ -34,15 +34,15 @@ class RayDevice {
   /// there: direct light is the processor's then. Errors: no memory, the device is lost.
   virtual Result<light::LightDevice*> light_device(const TraceScene& in) = 0;
 
-  /// trace_hits(), but that the hits stay on the device until forget(), and sweep() has what they
-  /// bring. Some elements; 1 to 65535 samples; `hits` as no_hits() gives
-  /// them. In params neither parts, keep, earlier nor layers. Errors: ErrorCode::unsupported for
-  /// too many rays, cancelled, no memory, the device is lost.
-  virtual Status trace(const TraceScene& in, int samples, const TraceParams& params,
-                       TracedHits& hits, Progress& progress) = 0;
+  /// trace_more(), but that the hits stay on the device until forget(), and sweep() has what they
+  /// bring: the store of the round, which the caller adds, is empty. All rounds of `hits` are the
+  /// device's. Some elements. In params neither parts, keep, earlier nor layers. Errors:
+  /// ErrorCode::unsupported for too many rays, cancelled, no memory, the device is lost.
+  virtual Status trace(const TraceScene& in, std::span<const uint16_t> target,
+                       const TraceParams& params, TracedHits& hits, Progress& progress) = 0;
 
-  /// What each element's rays of trace() bring from the map; their halves are those of all of them.
-  /// Errors: no memory, the device is lost.
+  /// What each element's rays bring from the map, of those rounds of trace() that count. Errors: no
+  /// memory, the device is lost.
   virtual Status sweep(const RadiosityMap& map, std::span<Gathered> out) = 0;
 
   /// Gives the memory of the scene and of trace() back.

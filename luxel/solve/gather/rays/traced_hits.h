@@ -17,7 +17,7 @@ class RayDevice;
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.
 struct TracedHits {
   std::vector<HitStore> rounds;
-  /// Where the hits of the first round are, whose store is empty; null: in that.
+  /// Where the hits of all rounds are, whose stores are empty; null: in those.
   RayDevice* device = nullptr;
   std::vector<uint16_t> samples;    ///< per element, of all rounds that count
   std::vector<uint8_t> last_round;  ///< per element, that which added to it last

@@ -21,12 +21,14 @@ std::span<const OpenRay> rays_of(std::span<const OpenRay> rays, size_t begin, si
 
 /// Puts an element's rays into the buffers as if they had been traced there. They need no
 /// directions: none of them has left the scene.
-void take_rays(std::span<const OpenRay> rays, RayBuffers& buffers) {
+void take_rays(std::span<const OpenRay> rays, bool guided, RayBuffers& buffers) {
   RayBatch& batch = buffers.batch;
   batch.rays.resize(rays.size()), batch.sample.clear(), batch.doublings.clear();
   buffers.hits.clear(), buffers.tint.clear();
   for (const OpenRay& ray : rays)
     batch.sample.push_back(ray.sample), buffers.hits.push_back(ray.hit);
+  if (guided)
+    for (const OpenRay& ray : rays) batch.doublings.push_back(uint8_t(ray.doublings));
 }
 
 /// Ends the rays of the tile of elements [begin, end). Returns how many more were traced.
@@ -36,7 +38,7 @@ uint64_t end_tile(const TraceScene& in, const RayScene& scene, std::span<const O
   uint64_t more = 0;
   for (size_t i = begin; i < end; ++i) {
     const std::span<const OpenRay> own = rays_of(rays, i, i + 1);
-    take_rays(own, buffers);
+    take_rays(own, is_guided(hits, i), buffers);
     if (!own.empty()) {
       sort_rays(scene, buffers, i, {0, hits.samples[i]}, hits, tile);
       drop_enclosed_paths(scene, in.elements, i, hits, buffers.near);

@@ -12,14 +12,15 @@ namespace luxel::gather {
 
 struct OpenRay {
   uint32_t element = 0, sample = 0;
-  trace::Hit hit;  ///< of a surface
+  uint32_t doublings = 0;  ///< CellShares of its cell
+  trace::Hit hit;          ///< of a surface
 };
 
 /// Takes such rays of elements [begin, end) to their ends as trace_more() takes those that it
 /// traces: counts what they have met, notes what they bring without the map, and returns their
 /// hits, in tiles of kTileElements, of which `begin` is a multiple. `rays`: element after element,
-/// of each element's first round. `hits` knows the samples of these elements, all of which are
-/// counted, and what their other rays have met. Errors: cancelled.
+/// of one round. `hits` knows the samples of these elements with those of that round, and what
+/// their other rays have met. Errors: cancelled.
 Result<std::vector<HitTile>> end_open_rays(const SceneOfRays& scene, const TraceScene& in,
                                            size_t begin, size_t end, std::span<const OpenRay> rays,
                                            TracedHits& hits, Progress& progress);

@@ -41,9 +41,6 @@ uint32_t places_of(const atlas::Atlas& atlas) {
   return (side + 2) * (side + 1) - 1;
 }
 
-/// Any number: it sets the directions of guided rays apart from those that told where to look.
-constexpr uint64_t kGuidedSeed = 0x9a1de;
-
 /// One round's way through the elements.
 struct Round {
   const RayScene& ray_scene;
@@ -80,7 +77,7 @@ void Round::fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBat
   if (is_guided(hits, i)) {
     const CellShares shares =
         shares_at(hits.guide.groups[hits.guide.of_element[i]], hits.guided[i]);
-    return fill_rays(from, n, flat, seed_of_rays(hash64(seed, kGuidedSeed), i), samples, shares,
+    return fill_rays(from, n, flat, seed_of_rays(seed_of_guided_rays(seed), i), samples, shares,
                      batch);
   }
   fill_rays(from, n, flat, seed_of_rays(seed, i), samples, batch);

@@ -1,0 +1,42 @@
+// Which rays a round adds to which elements, in the order in which a device takes them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/solve/gather/rays/traced_hits.h"
+
+namespace luxel::device {
+
+/// The rays that a round adds to one element; RaySlot of shaders/ray_slots.glsl.
+struct RaySlot {
+  uint32_t element = 0;
+  uint32_t first = 0, end = 0;  ///< its samples
+  uint32_t shares = 0;  ///< 0: cells have equal shares; else 1 + a number of RoundSlots::shares
+  uint32_t places = 0;  ///< for hits: as many as there are rays, or a few more
+};
+static_assert(sizeof(RaySlot) == 20);
+
+/// Slots of the elements [begin, end) that get rays. Those with as many rays lie together: a work
+/// group has 64 slots, a tile, and takes as long as the one with the most.
+struct SlotChunk {
+  size_t begin = 0, end = 0;  ///< `begin` is a multiple of gather::kTileElements
+  std::vector<RaySlot> slots;
+  /// Per tile, where its hits begin, in rows of 64: the first of each slot, the second of each and
+  /// so on. One extra entry: how many rows there are.
+  std::vector<uint32_t> first_row{0};
+};
+
+struct RoundSlots {
+  std::vector<SlotChunk> chunks;  ///< in the order of elements; none is without slots
+  std::vector<uint32_t> shares;   ///< gather::CellShares in use: 8 words each, four bits for a cell
+  uint64_t samples = 0;           ///< of all slots
+};
+
+/// Of elements that lack samples, those up to `target`. `places_of_chunk`: about so many in a
+/// chunk, or those of gather::kTileElements elements.
+RoundSlots slots_of_round(std::span<const uint16_t> target, const gather::TracedHits& hits,
+                          uint64_t places_of_chunk);
+
+}  // namespace luxel::device

@@ -2,12 +2,14 @@
 // the processor.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bench/bench.h"
 #include "bench/scenes_of_rays.h"
 #include "luxel/base/clock.h"
 #include "luxel/base/differences.h"
 #include "luxel/base/parallel.h"
+#include "luxel/light/device/direct_light_on_device.h"
 #include "luxel/solve/device/device_sweep.h"
 #include "luxel/solve/device/landed_rays.h"
 #include "luxel/solve/gather/bounce/sweep.h"
@@ -128,17 +130,24 @@ Status measure_gather_in(const std::string& name, scene::Scene loaded, const gpu
   const gather::RadiosityMap map = even_map(*p, expected);
   LUXEL_TRY(m.processor, sweep_on_processor(map, expected));
 
-  LUXEL_TRY(const trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p->scene));
+  LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p->scene));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
+  std::optional<light::DeviceDirectLight> light;
+  if (device.has_doubles && light::device_knows(p->lights)) {
+    LUXEL_TRY(light::DeviceDirectLight made,
+              light::DeviceDirectLight::make(tracer, commands, p->scene, p->lights));
+    light.emplace(std::move(made));
+  }
+  const device::DeviceScene on_device{tracer, commands, in, light ? &*light : nullptr};
   const std::vector<uint16_t> target(m.elements, uint16_t(m.samples));
   // The second time counts.
   for (int k = 0; k < 2; ++k) {
     gather::TracedHits hits = gather::no_hits(p->elements.size());
     m.landed = {};
     const auto begin = Clock::now();
-    LUXEL_TRY(device::LandedRays landed, device::begin_rays({tracer, commands, in}, params));
-    LUXEL_TRY_STATUS(device::land_round({tracer, commands, in}, target, {}, params, landed, hits,
-                                        m.landed, progress));
+    LUXEL_TRY(device::LandedRays landed, device::begin_rays(on_device, params));
+    LUXEL_TRY_STATUS(
+        device::land_round(on_device, target, {}, params, landed, hits, m.landed, progress));
     m.round_s = seconds_since(begin), m.left_open = landed.left_open;
     LUXEL_TRY(m.device, sweep_on_device(commands, landed, map, m.samples, kSecondsOfSweeps));
   }

@@ -40,7 +40,7 @@ class GatherDevice final : public gather::RayDevice {
                const gather::TraceParams& params, gather::TracedHits& hits,
                Progress& progress) override {
     LUXEL_CHECK(tracer_);
-    const DeviceScene scene{*tracer_, *commands_, in};
+    const DeviceScene scene{*tracer_, *commands_, in, direct_ ? &*direct_ : nullptr};
     if (hits.rounds.empty()) {
       rays_.reset();
       LUXEL_TRY(LandedRays rays, begin_rays(scene, params));

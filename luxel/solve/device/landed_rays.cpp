@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
@@ -13,6 +14,7 @@
 #include "luxel/solve/device/shaders/landed_rays_binary.comp.h"
 #include "luxel/solve/device/shaders/landed_rays_wide.comp.h"
 #include "luxel/solve/gather/rays/ray_tile.h"
+#include "luxel/solve/gather/trace/follow_many.h"
 #include "luxel/solve/gather/trace/scene_of_rays.h"
 
 namespace luxel::device {
@@ -228,10 +230,17 @@ Status end_open(const SlotChunk& slots, std::span<const DeviceOpenRay> open, Rou
                 Progress& progress) {
   // Elements before the chunk without any rays have no more hits.
   round.more_ends.resize(slots.begin, uint32_t(round.more.size()));
+  trace::DeviceRayTracer& tracer = round.scene.tracer;
+  std::optional<gather::PathDevice> device;
+  if (round.scene.light)
+    device.emplace(gather::PathDevice{
+        *round.scene.light, [&](std::span<const trace::Ray> rays, std::span<trace::Hit> hits) {
+          return tracer.closest_hits(rays, hits);
+        }});
   LUXEL_TRY(const std::vector<gather::HitTile> ended,
             gather::end_open_rays(round.on_processor, round.scene.in, slots.begin, slots.end,
-                                  in_order(open, slots.begin, slots.end, round.scene.tracer),
-                                  round.hits, progress));
+                                  in_order(open, slots.begin, slots.end, tracer),
+                                  device ? &*device : nullptr, round.hits, progress));
   for (const gather::HitTile& tile : ended) {
     for (const uint32_t end : tile.end)
       round.more_ends.push_back(uint32_t(round.more.size()) + end);

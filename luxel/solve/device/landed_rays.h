@@ -64,9 +64,10 @@ struct LandedSeconds {
 
 /// Where rays are traced on the device; `in` is what the processor needs to end some of them.
 struct DeviceScene {
-  const trace::DeviceRayTracer& tracer;
+  trace::DeviceRayTracer& tracer;
   gpu::Commands& commands;
   const gather::TraceScene& in;
+  light::LightDevice* light = nullptr;  ///< lights where paths go on; null: the processor
 };
 
 /// Makes a scene ready for rounds of rays. Some elements; scenes without tints. Errors: no memory,

@@ -4,9 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
+
 #include "luxel/base/differences.h"
 #include "luxel/base/random.h"
 #include "luxel/gpu/device_test_support.h"
+#include "luxel/light/device/direct_light_on_device.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/scene/sides.h"
@@ -55,6 +58,7 @@ uint64_t sum_of_differences(std::span<const uint16_t> a, std::span<const uint16_
 class LandedRaysOnDevice : public gpu::testing::OnDevice {
  protected:
   /// So many rays of each element of `room` on the device and on the processor bring the same.
+  /// Those that the processor ends have their paths on the device, if that has double precision.
   void expect_the_same(const gather::Room& room, trace::HierarchyKind kind, int samples,
                        const LandParams& land = {});
 };
@@ -73,15 +77,21 @@ void LandedRaysOnDevice::expect_the_same(const gather::Room& room, trace::Hierar
   const auto expected = gather::trace_hits(in, samples, params, progress);
   ASSERT_TRUE(expected);
   const size_t n = room.elements.size();
-  const auto tracer = trace::DeviceRayTracer::build(*device_, room.scene, kind);
+  auto tracer = trace::DeviceRayTracer::build(*device_, room.scene, kind);
   ASSERT_TRUE(tracer);
   gather::TracedHits found = gather::no_hits(n);
   LandedSeconds seconds;
-  auto landed = begin_rays({*tracer, *commands_, in}, params);
+  std::optional<light::DeviceDirectLight> light;
+  if (device_->has_doubles) {
+    auto made = light::DeviceDirectLight::make(*tracer, *commands_, room.scene, room.lights);
+    ASSERT_TRUE(made) << made.error().message;
+    light.emplace(std::move(*made));
+  }
+  const DeviceScene scene{*tracer, *commands_, in, light ? &*light : nullptr};
+  auto landed = begin_rays(scene, params);
   ASSERT_TRUE(landed) << landed.error().message;
-  const Status status =
-      land_round({*tracer, *commands_, in}, std::vector<uint16_t>(n, uint16_t(samples)), land,
-                 params, *landed, found, seconds, progress);
+  const Status status = land_round(scene, std::vector<uint16_t>(n, uint16_t(samples)), land, params,
+                                   *landed, found, seconds, progress);
   ASSERT_TRUE(status) << status.error().message;
 
   const gather::RadiosityMap map = any_map(room, *expected);
@@ -188,7 +198,7 @@ TEST_F(LandedRaysOnDevice, BringTheSameBitsEachTime) {
   const transport::OwnSides sides =
       transport::find_own_sides(room->scene, room->atlas, room->map, *room->tracer);
   const gather::TraceScene in = gather::trace_scene(gather::scene_of(*room), &sides);
-  const auto tracer = trace::DeviceRayTracer::build(*device_, room->scene);
+  auto tracer = trace::DeviceRayTracer::build(*device_, room->scene);
   ASSERT_TRUE(tracer);
   std::vector<std::vector<DeviceGathered>> gathered;
   for (int k = 0; k < 2; ++k) {

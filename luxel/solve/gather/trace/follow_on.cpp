@@ -10,28 +10,6 @@
 namespace luxel::gather {
 namespace {
 
-/// What is kept of a path that has ended.
-FollowedPath end_of(const RayScene& in, const NearPath& path, TracedHits& out) {
-  const bool alive = max_component(path.throughput) > 0, found = alive && path.hit.found();
-  Rgb light = path.light;
-  if (alive && !found) {
-    const Rgb l = path.throughput * light::soft_radiance(in.scene, in.around, path.direction);
-    add_sky(in.near->layers, l, path.element, out);
-    light += l;
-  }
-  const bool has_hit =
-      found && (!path.hit.back_face ||
-                scene::reflects_from_behind(scene::material_at(in.scene, path.hit.point())));
-  const FollowedWay way{path.is_plain, alive ? path.direction : Vec3{}, has_hit, path.second_half};
-  light = light * std::ldexp(1.0f, -int(path.doublings));
-  FollowedPath end{path.element, path.ray, path.first_m, FollowedRay::pack(light, way), {}};
-  if (!has_hit) return end;
-  const uint32_t tint = pack_tint(path.throughput, hash64(path.seed, path.sample ^ 0x4e37u));
-  end.hit = store(in, path.hit.point(), {tint, path.second_half, path.doublings},
-                  transport::MayBeInside::yes);
-  return end;
-}
-
 /// Notes what a ray that was followed on brings (1) or no longer brings (-1). `hit` is its own, if
 /// it has one.
 void note_change(const RayScene& in, const FollowedRay& ray, StoredHit hit, float sign,
@@ -129,6 +107,27 @@ HitTile joined(const HitTile& a, const HitTile& b) {
 
 }  // namespace
 
+FollowedPath ended(const RayScene& in, const NearPath& path, TracedHits& out) {
+  const bool alive = max_component(path.throughput) > 0, found = alive && path.hit.found();
+  Rgb light = path.light;
+  if (alive && !found) {
+    const Rgb l = path.throughput * light::soft_radiance(in.scene, in.around, path.direction);
+    add_sky(in.near->layers, l, path.element, out);
+    light += l;
+  }
+  const bool has_hit =
+      found && (!path.hit.back_face ||
+                scene::reflects_from_behind(scene::material_at(in.scene, path.hit.point())));
+  const FollowedWay way{path.is_plain, alive ? path.direction : Vec3{}, has_hit, path.second_half};
+  light = light * std::ldexp(1.0f, -int(path.doublings));
+  FollowedPath end{path.element, path.ray, path.first_m, FollowedRay::pack(light, way), {}};
+  if (!has_hit) return end;
+  const uint32_t tint = pack_tint(path.throughput, hash64(path.seed, path.sample ^ 0x4e37u));
+  end.hit = store(in, path.hit.point(), {tint, path.second_half, path.doublings},
+                  transport::MayBeInside::yes);
+  return end;
+}
+
 void drop_enclosed_paths(const RayScene& in, const transport::Elements& elements, size_t element,
                          const TracedHits& hits, NearBuffers& near) {
   if (near.paths.empty() || near.paths.back().element != element) return;
@@ -142,7 +141,7 @@ uint64_t follow_paths(const RayScene& in, RayBuffers& buffers, TracedHits& out) 
   if (buffers.near.paths.empty()) return 0;
   if (in.layers) buffers.near.by_layer = out.sky_by_layer;
   return follow_near(*in.near, buffers.near, [&](const NearPath& path) {
-    buffers.followed.push_back(end_of(in, path, out));
+    buffers.followed.push_back(ended(in, path, out));
   });
 }
 

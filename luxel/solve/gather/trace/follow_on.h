@@ -18,6 +18,9 @@ inline constexpr size_t kPathsAtATime = 1024;
 void drop_enclosed_paths(const RayScene& in, const transport::Elements& elements, size_t element,
                          const TracedHits& hits, NearBuffers& near);
 
+/// Where a path has ended; `out` gets the layers of what it saw outside.
+FollowedPath ended(const RayScene& in, const NearPath& path, TracedHits& out);
+
 /// Follows buffers.near.paths on and adds where they end to buffers.followed. Returns the number of
 /// rays.
 uint64_t follow_paths(const RayScene& in, RayBuffers& buffers, TracedHits& out);

@@ -46,17 +46,6 @@ uint64_t add_direct_light(const NearScene& in, NearBuffers& buffers) {
   return buffers.batch.rays.size();
 }
 
-/// The path's ray on. False: the path ends there, by chance, in proportion to what it carries.
-bool go_on(const light::Receiver& at, uint64_t seed, NearPath& path) {
-  RandomStream random{hash64(seed, path.sample)};
-  const float chance = std::min(1.0f, max_component(path.throughput) / kSureThroughput);
-  if (random.next() >= chance) return false;
-  path.throughput = path.throughput / chance;
-  path.direction = frame_around(at.normal).to_world(cosine_hemisphere_sample(random.next2()));
-  path.direction = light::mirrored_above(path.direction, at.geometric_normal);
-  return true;
-}
-
 }  // namespace
 
 std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas) {
@@ -93,32 +82,48 @@ bool goes_on(const NearScene& in, const NearPath& path) {
                                        !transport::has_own_texel(*in.sides, path.hit.point()));
 }
 
+bool reflect(const NearScene& in, NearPath& path) {
+  path.throughput = path.throughput * scene::reflectance_at(in.scene, path.hit.point());
+  return max_component(path.throughput) > 0;
+}
+
+light::Receiver receiver_of(const NearScene& in, uint64_t depth, NearPath& path) {
+  const transport::SmoothPoint p = place_of(in.scene, path.hit);
+  const light::Receiver out{p.position, p.normal, p.geometric_normal,
+                            trace::offset_origin(p.position, p.geometric_normal, in.diagonal_m),
+                            hash64(path.seed + depth, path.sample ^ 0x80000000u)};
+  if (depth == 0)
+    path.first_m =
+        path.hit.t + length(out.origin - scene::world_position(in.scene, path.hit.point()));
+  return out;
+}
+
+bool go_on(const light::Receiver& at, uint64_t depth, NearPath& path) {
+  RandomStream random{hash64(path.seed + depth, path.sample)};
+  const float chance = std::min(1.0f, max_component(path.throughput) / kSureThroughput);
+  if (random.next() >= chance) return false;
+  path.throughput = path.throughput / chance;
+  path.direction = frame_around(at.normal).to_world(cosine_hemisphere_sample(random.next2()));
+  path.direction = light::mirrored_above(path.direction, at.geometric_normal);
+  return true;
+}
+
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {
   buffers.receivers.clear(), buffers.rays.clear(), buffers.going_on.clear();
   // Paths on black surfaces end.
   std::erase_if(buffers.paths, [&](NearPath& path) {
-    path.throughput = path.throughput * scene::reflectance_at(in.scene, path.hit.point());
-    const bool black = max_component(path.throughput) <= 0;
-    if (black) end(path, buffers);
-    return black;
+    const bool goes = reflect(in, path);
+    if (!goes) end(path, buffers);
+    return !goes;
   });
   // Light straight from the lights, at the points that the others have met.
-  for (NearPath& path : buffers.paths) {
-    const transport::SmoothPoint p = place_of(in.scene, path.hit);
-    buffers.receivers.push_back(
-        {p.position, p.normal, p.geometric_normal,
-         trace::offset_origin(p.position, p.geometric_normal, in.diagonal_m),
-         hash64(path.seed + depth, path.sample ^ 0x80000000u)});
-    if (depth > 0) continue;
-    const Vec3 met = scene::world_position(in.scene, path.hit.point());
-    path.first_m = path.hit.t + length(buffers.receivers.back().origin - met);
-  }
+  for (NearPath& path : buffers.paths) buffers.receivers.push_back(receiver_of(in, depth, path));
   const uint64_t shadow_rays = add_direct_light(in, buffers);
   // Each path goes on with one ray, or ends by chance.
   size_t alive = 0;
   for (size_t i = 0; i < buffers.paths.size(); ++i) {
     NearPath& path = buffers.paths[i];
-    if (!go_on(buffers.receivers[i], path.seed + depth, path)) {
+    if (!go_on(buffers.receivers[i], depth, path)) {
       end(path, buffers);
       continue;
     }

@@ -79,6 +79,16 @@ uint64_t follow_near(const NearScene& in, NearBuffers& buffers, const End& end);
 /// come first in buffers.going_on, with throughput 0. `depth`: how many steps there have been.
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers);
 
+// The parts of a step of one path. With each light that it gets is added to NearPath::light, times
+// its throughput over pi.
+/// Takes on what the surface there reflects. False: nothing, and the path ends.
+bool reflect(const NearScene& in, NearPath& path);
+/// Where a path is lit, and its ray on starts. `depth`: how many steps there have been.
+light::Receiver receiver_of(const NearScene& in, uint64_t depth, NearPath& path);
+/// Draws its ray on, path.direction from at.origin. False: it ends there, by chance, in proportion
+/// to what it carries.
+bool go_on(const light::Receiver& at, uint64_t depth, NearPath& path);
+
 /// Whether the map has an answer for a place that a path has met; where_own: if own_lookup() reads
 /// something there.
 enum class MapAnswers : uint8_t { yes, no, where_own };

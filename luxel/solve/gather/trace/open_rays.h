@@ -10,6 +10,8 @@
 
 namespace luxel::gather {
 
+struct PathDevice;
+
 struct OpenRay {
   uint32_t element = 0, sample = 0;
   uint32_t doublings = 0;  ///< CellShares of its cell
@@ -20,9 +22,11 @@ struct OpenRay {
 /// traces: counts what they have met, notes what they bring without the map, and returns their
 /// hits, in tiles of kTileElements, of which `begin` is a multiple. `rays`: element after element,
 /// of one round. `hits` knows the samples of these elements with those of that round, and what
-/// their other rays have met. Errors: cancelled.
+/// their other rays have met. `device` traces the rays of paths (follow_many.h); null: the
+/// processor does. Errors: cancelled; those of the device.
 Result<std::vector<HitTile>> end_open_rays(const SceneOfRays& scene, const TraceScene& in,
                                            size_t begin, size_t end, std::span<const OpenRay> rays,
-                                           TracedHits& hits, Progress& progress);
+                                           const PathDevice* device, TracedHits& hits,
+                                           Progress& progress);
 
 }  // namespace luxel::gather

@@ -51,7 +51,7 @@ Status measure_direct_in(const std::string& name, scene::Scene loaded, const gpu
                          Table& table) {
   Progress progress;
   LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), kDirectResolution, progress));
-  if (p->tracer->has_tints() || !light::device_knows(p->lights)) {
+  if (p->tracer->has_tints() || !light::device_knows(p->scene, p->lights)) {
     table.notes.push_back(name + " is left out: the device does not know its lights or its glass");
     return {};
   }

@@ -133,7 +133,7 @@ Status measure_gather_in(const std::string& name, scene::Scene loaded, const gpu
   LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, p->scene));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   std::optional<light::DeviceDirectLight> light;
-  if (device.has_doubles && light::device_knows(p->lights)) {
+  if (device.has_doubles && light::device_knows(p->scene, p->lights)) {
     LUXEL_TRY(light::DeviceDirectLight made,
               light::DeviceDirectLight::make(tracer, commands, p->scene, p->lights));
     light.emplace(std::move(made));

@@ -1,10 +1,12 @@
 #include "luxel/light/device/device_lights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "luxel/base/check.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/trace/vulkan/device_pictures.h"
 
 namespace luxel::light {
 namespace {
@@ -17,8 +19,9 @@ struct DeviceTriangleLight {
   float area_m2;
   uint32_t instance, triangle, piece;
   uint32_t two_sided;
+  uint32_t texture = 0;  ///< 1 + the number of a LightTexture; 0: it is even
 };
-static_assert(sizeof(DeviceTriangleLight) == 80);
+static_assert(sizeof(DeviceTriangleLight) == 84);
 static_assert(sizeof(LightNode) == 76);
 
 struct DevicePunctualLight {
@@ -27,20 +30,39 @@ struct DevicePunctualLight {
   float range_m, cos_inner, cos_outer;
   float disc_height;
   uint32_t kind, has_disc;
+  Vec3 side;
+  uint32_t profile;  ///< 1 + its number; 0: none
 };
-static_assert(sizeof(DevicePunctualLight) == 60);
+static_assert(sizeof(DevicePunctualLight) == 76);
+
+/// The emission of a triangle light.
+struct LightTexture {
+  Rgb emission;
+  uint32_t is_placed;          ///< whether its mesh has texture coordinates
+  std::array<Vec2, 3> places;  ///< of a, b and c in the picture
+  trace::DevicePicture picture;
+};
+static_assert(sizeof(LightTexture) == 64);
+
+struct DeviceProfile {
+  uint32_t angles, vertical, horizontal;  ///< how many of both
+  uint32_t first;  ///< of its values: vertical angles, horizontal ones, candela
+};
+static_assert(int(scene::LightProfile::Angles::c) == 0 &&
+              int(scene::LightProfile::Angles::b) == 1 && int(scene::LightProfile::Angles::a) == 2);
 static_assert(int(scene::LightKind::point) == 0 && int(scene::LightKind::spot) == 1 &&
               int(scene::LightKind::directional) == 2);
 
 struct Setup {
   trace::DeviceWorld world;
-  VkDeviceAddress triangles, nodes, punctual, punctual_order, punctual_nodes;
+  VkDeviceAddress triangles, nodes, textures, texels, linear_of_byte;
+  VkDeviceAddress punctual, punctual_order, punctual_nodes, profiles, profile_values;
   VkDeviceAddress bright_texels, guide, below, row_cosine, pixels;
   float diagonal_m, rotation_rad;
   int32_t map_width;
   uint32_t triangle_count, punctual_count, bright_count;
 };
-static_assert(sizeof(Setup) == 144);
+static_assert(sizeof(Setup) == 184);
 
 DeviceTriangleLight device_light(const TriangleLight& light) {
   return {light.a,       light.b,        light.c,        light.normal, light.mean_radiance,
@@ -58,7 +80,9 @@ DevicePunctualLight device_light(const scene::PunctualLight& light) {
           std::cos(light.outer_cone_rad),
           2 * s * s,
           uint32_t(light.kind),
-          uint32_t(scene::has_disc(light))};
+          uint32_t(scene::has_disc(light)),
+          light.side,
+          light.profile == scene::kNone ? 0 : light.profile + 1};
 }
 
 template <class T>
@@ -73,6 +97,62 @@ Result<gpu::Buffer> uploaded_as(gpu::Commands& commands, std::span<const From> l
   return uploaded<To>(commands, values);
 }
 
+const scene::Material& material_of(const scene::Scene& scene, const TriangleLight& light) {
+  return scene::material_at(scene, {light.instance, light.triangle, {}});
+}
+
+LightTexture light_texture(const scene::Scene& scene, const TriangleLight& light,
+                           trace::DevicePictures& pictures) {
+  const scene::Material& material = material_of(scene, light);
+  const scene::Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
+  const scene::TextureRef& ref = material.emission_texture;
+  LightTexture out{.emission = material.emission,
+                   .is_placed = !trace::texture_coordinates(mesh, ref).empty(),
+                   .places = {},
+                   .picture = pictures.picture(ref)};
+  const std::array<Vec2, 3> corners = trace::places_in_picture(mesh, light.triangle, ref);
+  for (size_t k = 0; k < 3; ++k) {
+    Barycentric at = light.part[k];
+    if (light.flipped) std::swap(at.u, at.v);
+    out.places[k] = corners[0] * (1 - at.u - at.v) + corners[1] * at.u + corners[2] * at.v;
+  }
+  return out;
+}
+
+Status upload_triangles(gpu::Commands& commands, const scene::Scene& scene, const Lights& lights,
+                        DeviceLights& out) {
+  std::vector<uint32_t> texels;
+  trace::DevicePictures pictures(scene, texels);
+  std::vector<LightTexture> textures;
+  std::vector<DeviceTriangleLight> triangles;
+  for (const TriangleLight& light : lights.triangles) {
+    triangles.push_back(device_light(light));
+    if (!light.textured) continue;
+    textures.push_back(light_texture(scene, light, pictures));
+    triangles.back().texture = uint32_t(textures.size());
+  }
+  LUXEL_TRY(out.triangles, uploaded<DeviceTriangleLight>(commands, triangles));
+  LUXEL_TRY(out.textures, uploaded<LightTexture>(commands, textures));
+  LUXEL_TRY(out.texels, uploaded<uint32_t>(commands, texels));
+  const std::array<float, 256> linear = trace::linear_of_bytes();
+  LUXEL_TRY(out.linear_of_byte, uploaded<float>(commands, linear));
+  return {};
+}
+
+Status upload_profiles(gpu::Commands& commands, const Lights& lights, DeviceLights& out) {
+  std::vector<DeviceProfile> profiles;
+  std::vector<float> values;
+  for (const scene::LightProfile& p : lights.profiles) {
+    profiles.push_back({uint32_t(p.angles), uint32_t(p.vertical_rad.size()),
+                        uint32_t(p.horizontal_rad.size()), uint32_t(values.size())});
+    for (const auto* some : {&p.vertical_rad, &p.horizontal_rad, &p.candela})
+      values.insert(values.end(), some->begin(), some->end());
+  }
+  LUXEL_TRY(out.profiles, uploaded<DeviceProfile>(commands, profiles));
+  LUXEL_TRY(out.profile_values, uploaded<float>(commands, values));
+  return {};
+}
+
 Status upload_surroundings(gpu::Commands& commands, const scene::Scene& scene,
                            const Surroundings& around, DeviceLights& out) {
   LUXEL_TRY(out.bright_texels, uploaded<uint32_t>(commands, around.bright_texels));
@@ -85,19 +165,18 @@ Status upload_surroundings(gpu::Commands& commands, const scene::Scene& scene,
 
 }  // namespace
 
-bool device_knows(const Lights& lights) {
-  return std::ranges::none_of(lights.triangles, &TriangleLight::textured) &&
-         std::ranges::all_of(lights.punctual, [](const scene::PunctualLight& light) {
-           return light.profile == scene::kNone;
-         });
+bool device_knows(const scene::Scene& scene, const Lights& lights) {
+  return std::ranges::none_of(lights.triangles, [&](const TriangleLight& light) {
+    return light.textured && scene::lets_light_through(material_of(scene, light));
+  });
 }
 
 Result<DeviceLights> upload_lights(gpu::Commands& commands, const trace::DeviceRayTracer& tracer,
                                    const scene::Scene& scene, const Lights& lights) {
-  LUXEL_CHECK(device_knows(lights));
+  LUXEL_CHECK(device_knows(scene, lights));
   DeviceLights out;
-  LUXEL_TRY(out.triangles,
-            (uploaded_as<DeviceTriangleLight, TriangleLight>(commands, lights.triangles)));
+  LUXEL_TRY_STATUS(upload_triangles(commands, scene, lights, out));
+  LUXEL_TRY_STATUS(upload_profiles(commands, lights, out));
   LUXEL_TRY(out.nodes, uploaded<LightNode>(commands, lights.nodes));
   LUXEL_TRY(out.punctual,
             (uploaded_as<DevicePunctualLight, scene::PunctualLight>(commands, lights.punctual)));
@@ -107,9 +186,14 @@ Result<DeviceLights> upload_lights(gpu::Commands& commands, const trace::DeviceR
   const Setup setup{.world = tracer.world(),
                     .triangles = out.triangles.address,
                     .nodes = out.nodes.address,
+                    .textures = out.textures.address,
+                    .texels = out.texels.address,
+                    .linear_of_byte = out.linear_of_byte.address,
                     .punctual = out.punctual.address,
                     .punctual_order = out.punctual_order.address,
                     .punctual_nodes = out.punctual_nodes.address,
+                    .profiles = out.profiles.address,
+                    .profile_values = out.profile_values.address,
                     .bright_texels = out.bright_texels.address,
                     .guide = out.guide.address,
                     .below = out.below.address,

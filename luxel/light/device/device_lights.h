@@ -10,14 +10,16 @@ namespace luxel::light {
 /// Buffers that shaders/lights.glsl reads; `setup` has the addresses of the others.
 struct DeviceLights {
   gpu::Buffer triangles, nodes;
+  gpu::Buffer textures, texels, linear_of_byte;  ///< of textured triangles
   gpu::Buffer punctual, punctual_order, punctual_nodes;
+  gpu::Buffer profiles, profile_values;
   gpu::Buffer bright_texels, guide, below, row_cosine, pixels;
   gpu::Buffer setup;
 };
 
-/// Whether a device knows all that it must of these lights: not those with a texture, or with a
-/// profile.
-bool device_knows(const Lights& lights);
+/// Whether a device knows all that it must of a scene's lights: not those with a texture, some of
+/// which light goes through.
+bool device_knows(const scene::Scene& scene, const Lights& lights);
 
 /// Sends the lights of `scene` to the device, of which it knows all. Errors: no memory, the device
 /// is lost.

@@ -69,13 +69,16 @@ Status DeviceDirectLight::make_steps(const trace::DeviceRayTracer& tracer, const
   const bool wide = tracer.kind() == trace::HierarchyKind::wide;
   const gpu::Spirv shader =
       wide ? gpu::Spirv(direct_light_wide_comp) : gpu::Spirv(direct_light_binary_comp);
+  const bool all_even =
+      std::ranges::none_of(lights.triangles, &TriangleLight::textured) && lights.profiles.empty();
   for (const DirectStep step : steps_of(lights)) {
     steps_.emplace_back();
     steps_.back().is_punctual =
         step == DirectStep::punctual_lights || step == DirectStep::drawn_punctual_lights;
     LUXEL_TRY(steps_.back().pipeline,
-              gpu::make_compute_pipeline(commands_->device(), shader, {sizeof(DirectPush), {}},
-                                         {uint32_t(tracer.lets_light_through()), uint32_t(step)}));
+              gpu::make_compute_pipeline(
+                  commands_->device(), shader, {sizeof(DirectPush), {}},
+                  {uint32_t(tracer.lets_light_through()), uint32_t(step), uint32_t(all_even)}));
   }
   return {};
 }

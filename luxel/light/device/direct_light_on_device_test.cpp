@@ -58,7 +58,7 @@ void DirectLightOnDevice::expect_the_same(const scene::Scene& scene, int samples
   const DirectParams params{.samples = samples, .seed = 5};
   Progress progress;
   const auto expected = direct_light(scene, elements, lights, *on_processor, params, progress);
-  ASSERT_TRUE(device_knows(lights));
+  ASSERT_TRUE(device_knows(scene, lights));
   auto device = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
   ASSERT_TRUE(device) << device.error().message;
   const auto found =
@@ -165,18 +165,72 @@ TEST_F(DirectLightOnDevice, PassesHoles) {
   expect_the_same(scene, 32, trace::HierarchyKind::wide);
 }
 
-// Light with a texture or a profile is the processor's.
+/// Blocks under a lamp with a coloured picture, which is cut into pieces; mirrored, or not.
+scene::Scene blocks_under_a_picture(bool mirrored) {
+  scene::Scene scene = blocks();
+  const uint32_t lamp = scene::add_material(scene, "lamp", {}, Rgb{9, 8, 7});
+  scene::Texture texture;
+  texture.width = 8, texture.height = 16;
+  for (int k = 0; k < 128; ++k)
+    for (const int c : {k % 8 * 30, k * 2, 255 - k, 255}) texture.rgba.push_back(uint8_t(c));
+  scene.textures.push_back(std::move(texture));
+  scene.materials[lamp].emission_texture.texture = 0;
+  scene.materials[lamp].emission_texture.wrap_u = scene::Wrap::mirror;
+  scene::add_rectangle(scene, {-1, 1, -1.5f, 0.5f}, 2, mirrored, lamp);
+  scene::Mesh& mesh = scene.meshes[scene.instances.back().mesh];
+  for (const Vec3& p : mesh.positions) mesh.uv0.push_back({0.7f * p.x, 0.4f * p.z});
+  if (mirrored) scene.instances.back().world_from_object = scaling({1, -1, 1});
+  if (mirrored)
+    for (Vec3& p : mesh.positions) p.y = -p.y;
+  return scene;
+}
+
+// By the pieces of two triangles; and by the two triangles of a picture that hardly varies.
+TEST_F(DirectLightOnDevice, IsThatOfPictures) {
+  for (const bool mirrored : {false, true}) {
+    scene::Scene scene = blocks_under_a_picture(mirrored);
+    const Lights lights = collect_lights(scene);
+    EXPECT_GT(lights.triangles.size(), 32u);
+    expect_the_same(scene, 64, trace::HierarchyKind::wide);
+  }
+  scene::Scene scene = blocks_under_a_picture(false);
+  for (uint8_t& byte : scene.textures[0].rgba) byte = uint8_t(240 + byte / 32);
+  EXPECT_LE(collect_lights(scene).triangles.size(), 32u);
+  expect_the_same(scene, 64, trace::HierarchyKind::binary);
+}
+
+// Lamps measured about each axis, turned, and one that is even all round.
+TEST_F(DirectLightOnDevice, IsThatOfLampsWithProfiles) {
+  scene::Scene scene = blocks();
+  for (const auto angles : {scene::LightProfile::Angles::a, scene::LightProfile::Angles::b,
+                            scene::LightProfile::Angles::c, scene::LightProfile::Angles::c}) {
+    const size_t k = scene.lights.size();
+    scene::LightProfile profile;
+    profile.angles = angles;
+    const bool is_even = k == 3, is_around = angles == scene::LightProfile::Angles::c;
+    profile.vertical_rad = {is_around ? 0 : -1.2f, 0.3f, 0.7f, 1.3f};
+    profile.horizontal_rad = is_even     ? std::vector<float>{0}
+                             : is_around ? std::vector<float>{0, 1, 4, 2 * kPi}
+                                         : std::vector<float>{-0.9f, 0.1f, 0.8f};
+    RandomStream random{k};
+    for (size_t n = 0; n < 4 * profile.horizontal_rad.size(); ++n)
+      profile.candela.push_back(1 + 9 * random.next());
+    scene::PunctualLight lamp;
+    lamp.position = {float(k) - 1.5f, 2, 0.5f * float(k) - 1};
+    lamp.direction = normalize(Vec3{0.3f * float(k) - 0.4f, -1, 0.2f});
+    lamp.side = {1, 0.2f, 0.1f * float(k)};
+    scene.lights.push_back(lamp);
+    scene::attach_profile(scene, k, std::move(profile), 1 + 0.1f * float(k));
+  }
+  expect_the_same(scene, 16, trace::HierarchyKind::wide);
+}
+
+// A picture with holes sends light through some of itself alone: it is the processor's.
 TEST_F(DirectLightOnDevice, IsNotWorkedOutOfLightsThatTheDeviceDoesNotKnow) {
-  Lights lights;
-  lights.triangles.emplace_back();
-  EXPECT_TRUE(device_knows(lights));
-  lights.triangles[0].textured = true;
-  EXPECT_FALSE(device_knows(lights));
-  lights.triangles.clear();
-  lights.punctual.emplace_back();
-  EXPECT_TRUE(device_knows(lights));
-  lights.punctual[0].profile = 0;
-  EXPECT_FALSE(device_knows(lights));
+  scene::Scene scene = blocks_under_a_picture(false);
+  EXPECT_TRUE(device_knows(scene, collect_lights(scene)));
+  scene.materials.back().alpha_mode = scene::AlphaMode::mask;
+  EXPECT_FALSE(device_knows(scene, collect_lights(scene)));
 }
 
 // Only those that are asked for change.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "luxel/image/color.h"
 #include "luxel/scene/facet.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/trace/vulkan/device_pictures.h"
@@ -154,8 +153,7 @@ Status upload_surfaces(gpu::Commands& commands, const TracedScene& world,
   std::vector<PathMaterial> materials;
   for (const scene::Material& m : world.scene.materials)
     materials.push_back(path_material(m, pictures));
-  std::array<float, 256> linear;
-  for (size_t k = 0; k < linear.size(); ++k) linear[k] = image::linear_from_srgb(float(k) / 255.0f);
+  const std::array<float, 256> linear = trace::linear_of_bytes();
   LUXEL_TRY(out.triangles, uploaded<PathTriangle>(commands, path_triangles(world)));
   LUXEL_TRY(out.materials, uploaded<PathMaterial>(commands, materials));
   LUXEL_TRY(out.texels, uploaded<uint32_t>(commands, texels));

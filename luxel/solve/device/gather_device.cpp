@@ -30,7 +30,7 @@ class GatherDevice final : public gather::RayDevice {
 
   Result<light::LightDevice*> light_device(const gather::TraceScene& in) override {
     LUXEL_CHECK(tracer_);
-    if (!device_->has_doubles || !light::device_knows(in.lights)) return nullptr;
+    if (!device_->has_doubles || !light::device_knows(in.scene, in.lights)) return nullptr;
     LUXEL_TRY(light::DeviceDirectLight direct,
               light::DeviceDirectLight::make(*tracer_, *commands_, in.scene, in.lights));
     return &direct_.emplace(std::move(direct));

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "luxel/image/color.h"
+
 namespace luxel::trace {
 
 DevicePicture DevicePictures::picture(const scene::TextureRef& ref) {
@@ -19,6 +21,12 @@ DevicePicture DevicePictures::picture(const scene::TextureRef& ref) {
           uint32_t(ref.wrap_u),
           uint32_t(ref.wrap_v),
           uint32_t(ref.filter == scene::Filter::nearest)};
+}
+
+std::array<float, 256> linear_of_bytes() {
+  std::array<float, 256> out;
+  for (size_t k = 0; k < out.size(); ++k) out[k] = image::linear_from_srgb(float(k) / 255.0f);
+  return out;
 }
 
 const std::vector<Vec2>& texture_coordinates(const scene::Mesh& mesh,

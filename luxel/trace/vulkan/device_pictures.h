@@ -33,6 +33,9 @@ class DevicePictures {
   std::vector<uint32_t> first_;  ///< per texture
 };
 
+/// The linear value of each byte of an sRGB colour.
+std::array<float, 256> linear_of_bytes();
+
 /// The mesh's coordinates for a texture; may be empty.
 const std::vector<Vec2>& texture_coordinates(const scene::Mesh& mesh, const scene::TextureRef& ref);
 

@@ -5,6 +5,7 @@
 #include "luxel/base/both_directions.h"
 #include "lights.glsl"
 #include "shadow_rays.glsl"
+#include "light_values.glsl"
 #include "draw_lights.glsl"
 layout(local_size_x = 64) in;
 
@@ -34,7 +35,7 @@ void aim_at_triangle(TriangleLight light, Source s, uint count, Receiver r, inou
     // The ray ends just before the light, which must not block it.
     vec3 end = offset_origin(point.target, front ? light.normal : -light.normal, setup.diagonal_m);
     float w = s.drawn ? point.weight * point.measure : point.weight;
-    add_shadow_ray(s, sum, r, origin, w, light.radiance * w, end - origin, 1 - 1e-4);
+    add_shadow_ray(s, sum, r, origin, w, radiance_at(light, point.at) * w, end - origin, 1 - 1e-4);
   }
   add_source(s, sum);
 }

@@ -2,7 +2,6 @@
 #include "luxel/base/both_sobol.h"
 #include "luxel/light/both_bright_texel.h"
 #include "luxel/light/both_light_group.h"
-#include "luxel/light/both_punctual_light.h"
 #include "luxel/light/both_triangle_light.h"
 #include "luxel/trace/vulkan/shaders/frame.glsl"
 
@@ -12,6 +11,13 @@ struct TriangleLight {
   float area_m2;
   uint instance, triangle, piece;
   uint two_sided;
+  uint texture_number;  // 1 + that of a LightTexture; 0: it is even
+};
+struct LightTexture {
+  vec3 emission;
+  uint is_placed;
+  vec2 places[3];
+  Picture picture;
 };
 // light::LightNode
 struct LightNode {
@@ -30,21 +36,35 @@ struct PunctualLight {
   float range_m, cos_inner, cos_outer;
   float disc_height;  // 1 - cos(half of the disc's angle)
   uint kind, has_disc;
+  vec3 side;
+  uint profile;  // 1 + its number; 0: none
+};
+// scene::LightProfile; its values: vertical angles, horizontal ones, candela
+struct LightProfile {
+  uint angles, vertical, horizontal;
+  uint first;
 };
 layout(buffer_reference, scalar) readonly buffer TriangleLights { TriangleLight at[]; };
+layout(buffer_reference, scalar) readonly buffer LightTextures { LightTexture at[]; };
+layout(buffer_reference, scalar) readonly buffer LightProfiles { LightProfile at[]; };
 layout(buffer_reference, scalar) readonly buffer LightNodes { LightNode at[]; };
 layout(buffer_reference, scalar) readonly buffer PunctualLights { PunctualLight at[]; };
 layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
 layout(buffer_reference, scalar) readonly buffer Doubles { double at[]; };
 layout(buffer_reference, scalar) readonly buffer Pixels { vec3 at[]; };
 
-layout(buffer_reference, scalar) readonly buffer Setup {
+layout(buffer_reference, scalar) buffer Setup {
   World world;
   TriangleLights triangles;  // in the order of the leaves of nodes
   LightNodes nodes;
+  LightTextures textures;
+  Texels texels;
+  Floats linear_of_byte;
   PunctualLights punctual;
   Numbers punctual_order;  // leaves of punctual_nodes
   LightNodes punctual_nodes;
+  LightProfiles profiles;
+  Floats profile_values;
   // light::Surroundings, and its map.
   Numbers bright_texels, guide;
   Doubles below, row_cosine;
@@ -62,22 +82,6 @@ LightTriangle triangle_of(TriangleLight light) {
 LightGroup group_of(LightNode n) {
   return LightGroup(n.centre, n.radius_m, n.power, n.facing, n.even, n.axis, n.cos_angle, n.sin_angle,
                     n.reach_m);
-}
-
-// light::PunctualIncidence; a distance of 0 is infinite.
-struct Incidence {
-  vec3 irradiance, towards;
-  float distance_m;
-};
-Incidence incidence_at(PunctualLight light, vec3 position) {
-  if (light.kind == kDirectional) return Incidence(light.intensity, -light.direction, 0);
-  vec3 to_light = light.position - position;
-  float distance_m = length(to_light);
-  if (distance_m <= 0) return Incidence(vec3(0), vec3(0), 0);
-  vec3 towards = to_light * (1 / distance_m);
-  float share = share_at_distance(distance_m, light.range_m);
-  if (light.kind == kSpot) share *= share_in_cone(-dot(towards, light.direction), light.cos_inner, light.cos_outer);
-  return Incidence(light.intensity * share, towards, distance_m);
 }
 
 // luxel/base/random.h

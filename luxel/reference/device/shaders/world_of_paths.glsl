@@ -40,7 +40,6 @@ layout(buffer_reference, scalar) readonly buffer PathMaterials { PathMaterial at
 layout(buffer_reference, scalar) readonly buffer PathLights { PathLight at[]; };
 layout(buffer_reference, scalar) readonly buffer Doubles { double at[]; };
 layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
-layout(buffer_reference, scalar) readonly buffer Floats { float at[]; };
 layout(buffer_reference, scalar) readonly buffer MapPixels { vec3 at[]; };
 
 layout(buffer_reference, scalar) buffer Setup {
@@ -80,29 +79,9 @@ float largest(vec3 c) { return max(c.x, max(c.y, c.z)); }
 
 vec3 between(vec3 values[3], vec2 uv) { return values[0] * (1 - uv.x - uv.y) + values[1] * uv.x + values[2] * uv.y; }
 
-vec4 linear_texel(Setup setup, Picture p, int x, int y) {
-  uint at = setup.texels.at[p.first + uint(wrapped(y, int(p.height), p.wrap_v)) * p.width +
-                            uint(wrapped(x, int(p.width), p.wrap_u))];
-  return vec4(setup.linear_of_byte.at[at & 255u], setup.linear_of_byte.at[at >> 8 & 255u],
-              setup.linear_of_byte.at[at >> 16 & 255u], float(at >> 24) / 255.0);
-}
-
-// Colours are filtered in linear light. 1 without picture or places.
-vec4 colour_at(Setup setup, Picture p, bool has_places, vec2 places[3], vec2 uv) {
-  if (p.width == 0 || !has_places) return vec4(1);
-  vec2 at = (1 - uv.x - uv.y) * places[0] + uv.x * places[1] + uv.y * places[2];
-  at = mix(clamp(at, vec2(-1e6), vec2(1e6)), vec2(0), bvec2(isnan(at.x) || isinf(at.x), isnan(at.y) || isinf(at.y)));
-  at *= vec2(p.width, p.height);
-  if (p.nearest != 0) return linear_texel(setup, p, int(floor(at.x)), int(floor(at.y)));
-  vec2 low = floor(at - 0.5), f = at - 0.5 - low;
-  ivec2 c = ivec2(low);
-  return mix(mix(linear_texel(setup, p, c.x, c.y), linear_texel(setup, p, c.x + 1, c.y), f.x),
-             mix(linear_texel(setup, p, c.x, c.y + 1), linear_texel(setup, p, c.x + 1, c.y + 1), f.x), f.y);
-}
-
 // scene::base_color_at()
 vec4 base_color_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
-  vec4 c = colour_at(setup, m.base, (t.flags & kBasePlaced) != 0, t.base, uv);
+  vec4 c = colour_at(setup.texels, setup.linear_of_byte, m.base, (t.flags & kBasePlaced) != 0, t.base, uv);
   return vec4(c.xyz * (m.base_color * between(t.color, uv)), c.w * m.alpha);
 }
 
@@ -114,7 +93,7 @@ vec3 reflectance_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
 
 vec3 emission_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
   if (largest(m.emission) <= 0) return vec3(0);
-  return m.emission * colour_at(setup, m.emission_picture, (t.flags & kEmissionPlaced) != 0, t.emission, uv).xyz;
+  return m.emission * colour_at(setup.texels, setup.linear_of_byte, m.emission_picture, (t.flags & kEmissionPlaced) != 0, t.emission, uv).xyz;
 }
 
 // scene::passage_at(), of masks alone.

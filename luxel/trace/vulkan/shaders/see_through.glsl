@@ -4,10 +4,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/base/both_sobol.h"
+#include "luxel/trace/vulkan/shaders/pictures.glsl"
 
-struct Picture {
-  uint first, width, height, wrap_u, wrap_v, nearest;
-};
 struct SeeThroughMaterial {
   uint mode;
   float alpha, cutoff, transmission, metallic;
@@ -20,7 +18,6 @@ struct SeeThroughTriangle {
 };
 layout(buffer_reference, scalar) readonly buffer SeeThroughMaterials { SeeThroughMaterial at[]; };
 layout(buffer_reference, scalar) readonly buffer SeeThroughTriangles { SeeThroughTriangle at[]; };
-layout(buffer_reference, scalar) readonly buffer Texels { uint at[]; };
 
 struct SeeThrough {
   SeeThroughMaterials materials;
@@ -28,7 +25,6 @@ struct SeeThrough {
   Texels texels;
 };
 
-const uint kClamp = 1, kMirror = 2;  // scene::Wrap
 const uint kMask = 1, kBlend = 2;    // scene::AlphaMode
 
 // 64-bit numbers as pairs, the lower half in x: not every device has them.
@@ -60,34 +56,6 @@ float chance_of(vec3 origin, vec3 direction, uint instance, uint triangle) {
   uvec3 o = floatBitsToUint(origin), d = floatBitsToUint(direction);
   uvec2 towards = hash64(uvec2(d.y, d.x), uvec2(d.z, 0)), from = hash64(uvec2(o.y, o.x), uvec2(o.z, 0));
   return unit_float(hash64(hash64(towards, from), uvec2(triangle, instance)).y);
-}
-
-int wrapped(int i, int n, uint wrap) {
-  if (wrap == kClamp) return clamp(i, 0, n - 1);
-  int period = wrap == kMirror ? 2 * n : n;
-  // The remainder of negative numbers is undefined.
-  int j = i >= 0 ? i % period : period - 1 - (-1 - i) % period;
-  return j < n ? j : period - 1 - j;
-}
-
-float channel_of(Texels texels, Picture p, int x, int y, int channel) {
-  uint at = p.first + uint(wrapped(y, int(p.height), p.wrap_v)) * p.width +
-            uint(wrapped(x, int(p.width), p.wrap_u));
-  return float(bitfieldExtract(texels.at[at], 8 * channel, 8)) / 255.0;
-}
-
-// A channel of a picture, between the places of a triangle's corners; 1 without picture or places.
-float picture_at(Texels texels, Picture p, bool has_places, vec2 places[3], vec2 uv, int channel) {
-  if (p.width == 0 || !has_places) return 1;
-  vec2 at = (1 - uv.x - uv.y) * places[0] + uv.x * places[1] + uv.y * places[2];
-  at = mix(clamp(at, vec2(-1e6), vec2(1e6)), vec2(0), bvec2(isnan(at.x) || isinf(at.x), isnan(at.y) || isinf(at.y)));
-  at *= vec2(p.width, p.height);
-  if (p.nearest != 0) return channel_of(texels, p, int(floor(at.x)), int(floor(at.y)), channel);
-  vec2 low = floor(at - 0.5), f = at - 0.5 - low;
-  ivec2 c = ivec2(low);
-  return mix(mix(channel_of(texels, p, c.x, c.y, channel), channel_of(texels, p, c.x + 1, c.y, channel), f.x),
-             mix(channel_of(texels, p, c.x, c.y + 1, channel),
-                 channel_of(texels, p, c.x + 1, c.y + 1, channel), f.x), f.y);
 }
 
 // The share of light that does not go straight through.

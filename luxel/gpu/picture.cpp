@@ -159,14 +159,19 @@ Status put_pixels(Commands& commands, const Picture& picture, std::span<const st
   LUXEL_CHECK(pixels.size() == bytes_of(picture.params));
   const Device& device = commands.device();
   LUXEL_TRY(const Buffer staging, buffer_with(device, pixels, what));
-  return commands.run([&](VkCommandBuffer buffer) {
-    change_layout(device, buffer, picture, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    const VkBufferImageCopy copy = whole(picture);
-    device.vk.vkCmdCopyBufferToImage(buffer, staging.buffer.get(), picture.image.get(),
-                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    fill_levels(device, buffer, picture);
-  });
+  return commands.run(
+      [&](VkCommandBuffer buffer) { record_pixels(device, buffer, picture, staging); });
+}
+
+void record_pixels(const Device& device, VkCommandBuffer commands, const Picture& picture,
+                   const Buffer& pixels) {
+  LUXEL_CHECK(pixels.size == bytes_of(picture.params));
+  change_layout(device, commands, picture, VK_IMAGE_LAYOUT_UNDEFINED,
+                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  const VkBufferImageCopy copy = whole(picture);
+  device.vk.vkCmdCopyBufferToImage(commands, pixels.buffer.get(), picture.image.get(),
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+  fill_levels(device, commands, picture);
 }
 
 Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& picture) {

@@ -47,6 +47,10 @@ Result<Picture> picture_with(Commands& commands, PictureParams params,
 Status put_pixels(Commands& commands, const Picture& picture, std::span<const std::byte> pixels,
                   std::string_view what);
 
+/// Records that, for pixels that lie on the device.
+void record_pixels(const Device& device, VkCommandBuffer commands, const Picture& picture,
+                   const Buffer& pixels);
+
 /// A colour image, all its mipmaps, goes from one use to another, after all that came before.
 void change_layout(const Device& device, VkCommandBuffer commands, VkImage image,
                    VkImageLayout from, VkImageLayout to);

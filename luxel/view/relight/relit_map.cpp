@@ -63,7 +63,10 @@ MapPlaces map_places(const matrix::Target& target) {
   }
   out.first.push_back(0);
   std::vector<uint32_t> front = out.pixel;
-  for (int ring = 0; ring < kRings; ++ring) front = add_ring(front, is_covered, out);
+  for (int ring = 0; ring < kRings; ++ring) {
+    front = add_ring(front, is_covered, out);
+    out.ring_end.push_back(uint32_t(out.gutter.size()));
+  }
   return out;
 }
 

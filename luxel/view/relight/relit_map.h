@@ -16,6 +16,7 @@ struct MapPlaces {
   /// Pixels around them, each after all that it is the mean of.
   std::vector<uint32_t> gutter;
   std::vector<uint32_t> first, from;  ///< of each pixel of the gutter, one extra entry; pixels
+  std::vector<uint32_t> ring_end;     ///< of the gutter: none of a ring is the mean of another
 };
 
 /// What post::dilate makes of a map whose covered texels are the places that some patch lights:

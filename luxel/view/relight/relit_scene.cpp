@@ -39,8 +39,23 @@ Result<LightAtPoints> patches_on_device(const gpu::Device& device, const OpenedL
 }  // namespace
 
 PatchLight patch_light_of(const gpu::Device& device) {
-  return device.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? PatchLight::by_rays : PatchLight::by_maps;
+  return device.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? PatchLight::by_rays : PatchLight::on_device;
 }
+
+namespace {
+
+/// What relights the scene, if the device knows the file's codec. Errors: no memory, the device is
+/// lost.
+Result<std::optional<RelitOnDevice>> relit_on_device(gpu::Commands& commands,
+                                                     const OpenedLxr& opened,
+                                                     const DeviceScene& scene) {
+  auto made = make_relit_on_device(commands, opened.light, scene);
+  if (!made && made.error().code == ErrorCode::unsupported) return std::nullopt;
+  if (!made) return tl::unexpected(made.error());
+  return std::move(*made);
+}
+
+}  // namespace
 
 Result<RelitScene> lxr_shown(gpu::Commands& commands, PatchLight patches, OpenedLxr& opened) {
   const std::array pages{image::to_half(opened.light.indirect)};
@@ -55,6 +70,10 @@ Result<RelitScene> lxr_shown(gpu::Commands& commands, PatchLight patches, Opened
   out.shown.has_light = out.shown.has_last = true;
   LUXEL_TRY(out.lamps.direct, make_direct_light(commands.device(), scene));
   const size_t probes = opened.light.relighter.data().probe.size();
+  if (patches == PatchLight::on_device) {
+    LUXEL_TRY(out.lamps.relit, relit_on_device(commands, opened, scene));
+    if (!out.lamps.relit) patches = PatchLight::by_maps;
+  }
   if (patches == PatchLight::by_maps && can_light_points(commands.device(), probes)) {
     LUXEL_TRY(out.lamps.patches, patches_on_device(commands.device(), opened, scene));
   }
@@ -69,15 +88,20 @@ Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps,
                                 LampDrawing& drawing, DeviceScene& scene) {
   LightTimes out;
   LUXEL_TRY(out.shadows, draw_shadows(commands, shining(lamps), eye, drawing, scene));
-  relight(lamps, opened.light,
-          drawing.patches ? drawing.patches->result() : std::span<const Rgb>());
+  show_glow(lamps, opened, scene);
+  if (drawing.relit) {
+    LUXEL_TRY(opened.light.took, relight_on_device(commands, lamps, *drawing.relit, scene));
+  } else {
+    relight(lamps, opened.light,
+            drawing.patches ? drawing.patches->result() : std::span<const Rgb>());
+    const Clock::time_point start = Clock::now();
+    const std::array pages{image::to_half(opened.light.indirect)};
+    LUXEL_TRY_STATUS(put_light(commands, pages, 0, scene));
+    opened.light.took.map += 1e3 * seconds_since(start);
+  }
   const RelitLight::Milliseconds& took = opened.light.took;
   out.direct = took.direct, out.bounces = took.bounces, out.places = took.places;
-  const Clock::time_point start = Clock::now();
-  show_glow(lamps, opened, scene);
-  const std::array pages{image::to_half(opened.light.indirect)};
-  LUXEL_TRY_STATUS(put_light(commands, pages, 0, scene));
-  out.map = took.map + 1e3 * seconds_since(start);
+  out.map = took.map;
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include "luxel/view/draw/direct_light.h"
 #include "luxel/view/draw/light_at_points.h"
 #include "luxel/view/relight/open_lxr.h"
+#include "luxel/view/relight/relit_on_device.h"
 #include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view {
@@ -13,6 +14,8 @@ namespace luxel::view {
 /// What draws the lamps of an .lxr file.
 struct LampDrawing {
   DirectLight direct;
+  /// The light of all bounces, on the device; nothing: the processor's.
+  std::optional<RelitOnDevice> relit;
   /// The light of its patches, by the maps of shadows; nothing: by shadow rays.
   std::optional<LightAtPoints> patches;
 };
@@ -22,12 +25,17 @@ struct RelitScene {
   LampDrawing lamps;
 };
 
-/// Where patches get their light from. Shadow rays take a fraction of the time of shaders that a
-/// processor runs; a graphics card has the maps at hand.
-enum class PatchLight : uint8_t { by_rays, by_maps };
+/// Where light of all bounces is worked out, and what patches get straight from lamps.
+enum class PatchLight : uint8_t {
+  by_rays,  ///< all by the processor
+  by_maps,  ///< patches by the maps of shadows that the device has drawn, the rest by the processor
+  on_device  ///< all on the device, patches by shadow rays
+};
+/// On a graphics card all of it; on a processor that plays one, by its own code.
 PatchLight patch_light_of(const gpu::Device& device);
 
-/// With the light of the lamps as they were baked. Errors: no memory on the device.
+/// With the light of the lamps as they were baked. A file that the device does not know is relit by
+/// maps instead. Errors: no memory on the device.
 Result<RelitScene> lxr_shown(gpu::Commands& commands, PatchLight patches, OpenedLxr& opened);
 
 /// What the light of a picture took [ms].

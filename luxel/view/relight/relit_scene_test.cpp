@@ -1,6 +1,8 @@
 // A lamp that is dragged, against a new bake of the scene with the lamp where it has come to.
 #include "luxel/view/relight/relit_scene.h"
 
+#include <algorithm>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -8,9 +10,11 @@
 #include "luxel/export/baked_glb.h"
 #include "luxel/image/color.h"
 #include "luxel/image/flip.h"
+#include "luxel/image/half.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/command/relight.h"
 #include "luxel/scene/procedural.h"
+#include "luxel/view/draw/device_structs.h"
 #include "luxel/view/draw/device_test_support.h"
 #include "luxel/view/model/projection.h"
 #include "luxel/view/open_bake.h"
@@ -99,7 +103,8 @@ class RelitSceneTest : public testing::OnDevice {
 class DraggedLamp : public RelitSceneTest, public ::testing::WithParamInterface<PatchLight> {};
 
 INSTANTIATE_TEST_SUITE_P(PatchesLit, DraggedLamp,
-                         ::testing::Values(PatchLight::by_rays, PatchLight::by_maps));
+                         ::testing::Values(PatchLight::by_rays, PatchLight::by_maps,
+                                           PatchLight::on_device));
 
 TEST_P(DraggedLamp, IsWhereABakeHasIt) {
   OpenedLxr opened = prepared(box_with_lamp(warm_lamp({0.1f, 0.45f, 0.3f})));
@@ -125,6 +130,47 @@ TEST_P(DraggedLamp, IsWhereABakeHasIt) {
   const image::Image8 wanted = baked(box_with_lamp(moved), walk.shown);
   EXPECT_LT(mean_flip(after, wanted), 0.05);
   EXPECT_GT(mean_flip(before, wanted), 0.1);
+}
+
+/// The halves that the device has made, times their scale.
+std::vector<float> light_on_device(gpu::Commands& commands, const RelitOnDevice& relit,
+                                   const DeviceScene& scene) {
+  const auto here = gpu::make_buffer(commands.device(), relit.halves.size, gpu::Access::to_host,
+                                     "the light of a map");
+  EXPECT_TRUE(here && gpu::copy_bytes(commands, relit.halves, *here, here->size));
+  const float scale = scales_of(scene)[0];
+  std::vector<float> out;
+  for (size_t i = 0; i < here->size / sizeof(uint16_t); ++i) {
+    uint16_t bits = 0;
+    std::memcpy(&bits, here->mapped + i * sizeof bits, sizeof bits);
+    out.push_back(image::from_half(bits) * scale);
+  }
+  return out;
+}
+
+// Texels, gutters and what is black, to the steps of halves; then after a lamp has become a
+// thousand times as bright, which has another scale.
+TEST_F(RelitSceneTest, HasOnTheDeviceTheLightOfTheProcessor) {
+  OpenedLxr opened = prepared(box_with_lamp(warm_lamp({0.1f, 0.45f, 0.3f})));
+  auto relit = lxr_shown(*commands_, PatchLight::on_device, opened);
+  ASSERT_TRUE(relit) << relit.error().message;
+  ASSERT_TRUE(relit->lamps.relit);
+  Lamps lamps = opened.lamps;
+  for (const float factor : {1.0f, 1000.0f}) {
+    lamps.lamps[0].light.intensity = opened.lamps.lamps[0].light.intensity * factor;
+    lamps.lamps[0].light.position.x -= 0.05f;
+    ASSERT_TRUE(
+        follow_lamps(*commands_, lamps, nullptr, opened, relit->lamps, relit->shown.device));
+    relight(lamps, opened.light);
+    const std::vector<float>& expected = opened.light.indirect.data;
+    const std::vector<float> found =
+        light_on_device(*commands_, *relit->lamps.relit, relit->shown.device);
+    ASSERT_EQ(found.size(), expected.size());
+    const float largest = *std::ranges::max_element(expected);
+    EXPECT_GT(largest, 0);
+    for (size_t i = 0; i < found.size(); ++i)
+      ASSERT_NEAR(found[i], expected[i], 1e-3f * expected[i] + 1e-5f * largest) << i;
+  }
 }
 
 }  // namespace

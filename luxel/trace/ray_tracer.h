@@ -11,6 +11,7 @@
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
 #include "luxel/scene/scene.h"
+#include "luxel/trace/shared_meshes.h"
 
 namespace luxel::trace {
 
@@ -64,7 +65,8 @@ enum class Packets : uint8_t {
 class RayTracer {
  public:
   /// `max_flat_triangles`: drawn triangles above which meshes are shared between instances.
-  static Result<RayTracer> build(const scene::Scene& scene, size_t max_flat_triangles = 1u << 20);
+  static Result<RayTracer> build(const scene::Scene& scene,
+                                 size_t max_flat_triangles = kMaxFlatTriangles);
   /// Every mesh is stored once, however many instances it has, also in small scenes: rays take
   /// longer, but moved() does not.
   static Result<RayTracer> build_apart(const scene::Scene& scene);

@@ -75,10 +75,10 @@ Status DeviceDirectLight::make_steps(const trace::DeviceRayTracer& tracer, const
     steps_.emplace_back();
     steps_.back().is_punctual =
         step == DirectStep::punctual_lights || step == DirectStep::drawn_punctual_lights;
-    LUXEL_TRY(steps_.back().pipeline,
-              gpu::make_compute_pipeline(
-                  commands_->device(), shader, {sizeof(DirectPush), {}},
-                  {uint32_t(tracer.lets_light_through()), uint32_t(step), uint32_t(all_even)}));
+    LUXEL_TRY(
+        steps_.back().pipeline,
+        gpu::make_compute_pipeline(commands_->device(), shader, {sizeof(DirectPush), {}},
+                                   {tracer.shader_constant(), uint32_t(step), uint32_t(all_even)}));
   }
   return {};
 }

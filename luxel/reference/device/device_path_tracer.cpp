@@ -228,7 +228,7 @@ Result<DevicePathTracer> DevicePathTracer::make(const gpu::Device& device,
   impl->tracer.emplace(std::move(on_device));
   LUXEL_TRY(impl->world, upload_world(*impl->commands, *impl->tracer, traced_scene(scene, tracer)));
   const bool wide = impl->tracer->kind() == trace::HierarchyKind::wide;
-  const std::vector<uint32_t> constants{uint32_t(impl->tracer->lets_light_through())};
+  const std::vector<uint32_t> constants{impl->tracer->shader_constant()};
   LUXEL_TRY(impl->paths,
             gpu::make_compute_pipeline(
                 device, wide ? gpu::Spirv(paths_wide_comp) : gpu::Spirv(paths_binary_comp),

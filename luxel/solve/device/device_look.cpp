@@ -169,7 +169,7 @@ Result<LookShader> look_shader(const trace::DeviceRayTracer& tracer) {
             gpu::make_compute_pipeline(
                 tracer.device(),
                 wide ? gpu::Spirv(hemicubes_wide_comp) : gpu::Spirv(hemicubes_binary_comp),
-                {sizeof(LookPush), {}}, {uint32_t(tracer.lets_light_through())}));
+                {sizeof(LookPush), {}}, {tracer.shader_constant()}));
   return out;
 }
 

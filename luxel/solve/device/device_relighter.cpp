@@ -122,11 +122,11 @@ Status DeviceRelighter::Impl::make_pipelines() {
                                                   {sizeof(StepPush), {}}, {uint32_t(k)}));
   }
   const bool wide = tracer->kind() == trace::HierarchyKind::wide;
-  LUXEL_TRY(direct, gpu::make_compute_pipeline(device,
-                                               wide ? gpu::Spirv(relight_direct_wide_comp)
-                                                    : gpu::Spirv(relight_direct_binary_comp),
-                                               {sizeof(DirectPush), {}},
-                                               {uint32_t(tracer->lets_light_through())}));
+  LUXEL_TRY(direct,
+            gpu::make_compute_pipeline(device,
+                                       wide ? gpu::Spirv(relight_direct_wide_comp)
+                                            : gpu::Spirv(relight_direct_binary_comp),
+                                       {sizeof(DirectPush), {}}, {tracer->shader_constant()}));
   return {};
 }
 

@@ -38,7 +38,7 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
       out.pipeline,
       gpu::make_compute_pipeline(
           device, wide ? gpu::Spirv(first_hits_wide_comp) : gpu::Spirv(first_hits_binary_comp),
-          {sizeof(HitsPush), {}}, {uint32_t(tracer.lets_light_through())}));
+          {sizeof(HitsPush), {}}, {tracer.shader_constant()}));
   return out;
 }
 

@@ -320,7 +320,7 @@ Result<LandedRays> begin_rays(const DeviceScene& scene, const gather::TraceParam
             gpu::make_compute_pipeline(
                 commands.device(),
                 wide ? gpu::Spirv(landed_rays_wide_comp) : gpu::Spirv(landed_rays_binary_comp),
-                {sizeof(LandPush), {}}, {uint32_t(scene.tracer.lets_light_through())}));
+                {sizeof(LandPush), {}}, {scene.tracer.shader_constant()}));
   const light::Surroundings& around = in.lights.around;
   out.is_dark_around = !shines(in.scene, around);
   if (out.is_dark_around) return out;

@@ -5,6 +5,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/trace/embree/embree_query.h"
+#include "luxel/trace/shared_meshes.h"
 
 namespace luxel::trace {
 namespace {
@@ -72,17 +73,6 @@ bool RayTracer::Impl::add_shared_mesh(const scene::Mesh& mesh) {
   return rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
-namespace {
-
-/// Whether rays can be taken into the space of a mesh that stands so: not into that of one which is
-/// pressed flat.
-bool can_be_undone(const Mat34& m) {
-  const float size = length(column(m, 0)) * length(column(m, 1)) * length(column(m, 2));
-  return std::abs(determinant(m)) > 1e-6f * size;
-}
-
-}  // namespace
-
 bool RayTracer::Impl::add_instance(uint32_t index) {
   const scene::Instance& instance = scene->instances[index];
   const Mat34& m = instance.world_from_object;
@@ -118,16 +108,6 @@ bool RayTracer::Impl::add_top() {
 }
 
 namespace {
-
-/// Per mesh: whether it is stored once for all its instances.
-std::vector<bool> shared_meshes(const scene::Scene& scene, size_t max_flat_triangles) {
-  std::vector<uint32_t> uses(scene.meshes.size());
-  for (const scene::Instance& instance : scene.instances) ++uses[instance.mesh];
-  const bool large = scene::first_triangles(scene).back() > max_flat_triangles;
-  std::vector<bool> shared;
-  for (const uint32_t n : uses) shared.push_back(large && n > 1);
-  return shared;
-}
 
 tl::unexpected<Error> no_memory(const scene::Scene& scene) {
   return fail(ErrorCode::out_of_memory,

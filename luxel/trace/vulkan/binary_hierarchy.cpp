@@ -160,22 +160,24 @@ void append_subtree(const Task& task, const std::vector<BinaryNode>& subtree,
 
 }  // namespace
 
+void add_triangles(const scene::Mesh& mesh, const Mat34& world_from_object, uint32_t first,
+                   std::vector<DeviceTriangle>& out) {
+  const uint32_t mirrored = determinant(world_from_object) < 0;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!mesh.other_side.empty() && mesh.other_side[t] < t) continue;
+    const auto corner = [&](size_t k) {
+      return transform_point(world_from_object, mesh.positions[mesh.triangles[t][k]]);
+    };
+    out.push_back({corner(0), first + t, corner(1), mirrored, corner(2)});
+  }
+}
+
 std::vector<DeviceTriangle> device_triangles(const scene::Scene& scene) {
   const std::vector<uint32_t> first = scene::first_triangles(scene);
   std::vector<DeviceTriangle> out;
-  out.reserve(first.back());
-  for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const scene::Instance& instance = scene.instances[i];
-    const scene::Mesh& mesh = scene.meshes[instance.mesh];
-    const uint32_t mirrored = determinant(instance.world_from_object) < 0;
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (!mesh.other_side.empty() && mesh.other_side[t] < t) continue;
-      const auto corner = [&](size_t k) {
-        return transform_point(instance.world_from_object, mesh.positions[mesh.triangles[t][k]]);
-      };
-      out.push_back({corner(0), first[i] + t, corner(1), mirrored, corner(2)});
-    }
-  }
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    add_triangles(scene.meshes[scene.instances[i].mesh], scene.instances[i].world_from_object,
+                  first[i], out);
   return out;
 }
 

@@ -16,28 +16,31 @@ struct DeviceTriangle {
   Vec3 a;
   uint32_t number = 0;  ///< in the numbering of scene::first_triangles()
   Vec3 b;
-  uint32_t mirrored =
-      0;  ///< 1: its instance mirrors, so that the front is where a, b, c turn right
+  uint32_t mirrored = 0;  ///< 1: its instance mirrors, so that the front is where a, b, c turn
+                          ///< right; 2: see kStandsForInstance
   Vec3 c;
   uint32_t see_through = 0;  ///< number in SeeThrough::triangles, counted from 1; 0: it blocks
 };
 static_assert(sizeof(DeviceTriangle) == 48);
 
-/// All drawn triangles, but for the second of two sides of one sheet: rays meet the first, which
-/// stands for both.
+/// Appends the triangles of a mesh that stands so, but for the second of two sides of one sheet:
+/// rays meet the first, which stands for both. They are numbered from `first` on.
+void add_triangles(const scene::Mesh& mesh, const Mat34& world_from_object, uint32_t first,
+                   std::vector<DeviceTriangle>& out);
+/// Those of all instances.
 std::vector<DeviceTriangle> device_triangles(const scene::Scene& scene);
 
 /// What a node's child is: another node, or a few triangles that follow each other.
 struct ChildRef {
   static constexpr uint32_t kLeaf = 1u << 31;
-  static constexpr uint32_t kCountShift = 28, kMaxCount = 7;
+  static constexpr uint32_t kCountShift = 28, kMaxCount = 6;
   static constexpr uint32_t kFirstMask = (1u << kCountShift) - 1;
 
   static constexpr uint32_t leaf(uint32_t first, uint32_t count) {
     return kLeaf | count << kCountShift | first;
   }
   static constexpr bool is_leaf(uint32_t ref) { return (ref & kLeaf) != 0; }
-  static constexpr uint32_t count(uint32_t ref) { return ref >> kCountShift & kMaxCount; }
+  static constexpr uint32_t count(uint32_t ref) { return ref >> kCountShift & 7u; }
   static constexpr uint32_t first(uint32_t ref) { return ref & kFirstMask; }
 };
 

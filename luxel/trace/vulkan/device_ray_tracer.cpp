@@ -7,12 +7,10 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/scene/sides.h"
-#include "luxel/trace/vulkan/see_through.h"
 #include "luxel/trace/vulkan/shaders/closest_binary.comp.h"
 #include "luxel/trace/vulkan/shaders/closest_wide.comp.h"
 #include "luxel/trace/vulkan/shaders/occluded_binary.comp.h"
 #include "luxel/trace/vulkan/shaders/occluded_wide.comp.h"
-#include "luxel/trace/vulkan/wide_hierarchy.h"
 
 namespace luxel::trace {
 namespace {
@@ -40,37 +38,25 @@ DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& 
       commands_(std::move(commands)),
       first_triangle_(scene::first_triangles(scene)) {}
 
-Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind) {
+Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind, size_t max_flat_triangles) {
   kind_ = kind;
-  uint64_t drawn = 0;
-  for (const scene::Instance& i : scene_->instances)
-    drawn += scene_->meshes[i.mesh].triangles.size();
-  if (drawn >= ChildRef::kFirstMask)
-    return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
-                ChildRef::kFirstMask - 1, drawn);
   if (!(scene::world_bounds(*scene_).diagonal() < kLargestScene_m))
     return fail(ErrorCode::unsupported, "rays on the device know no scene of more than {} m",
                 kLargestScene_m);
-  std::vector<DeviceTriangle> triangles = device_triangles(*scene_);
-  triangle_count_ = triangles.size();
+  LUXEL_TRY(const DeviceHierarchy hierarchy, device_hierarchy(*scene_, kind, max_flat_triangles));
+  triangle_count_ = hierarchy.triangles.size(), has_instances_ = hierarchy.has_instances;
   constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
-  SeeThrough open = find_see_through(*scene_, triangles);
+  const SeeThrough& open = hierarchy.see_through;
   lets_light_through_ = !open.triangles.empty();
   LUXEL_TRY(open_materials_, gpu::uploaded_or_one(commands_, open.materials, kOpen));
   LUXEL_TRY(open_triangles_, gpu::uploaded_or_one(commands_, open.triangles, kOpen));
   LUXEL_TRY(open_texels_, gpu::uploaded_or_one(commands_, open.texels, kOpen));
   constexpr std::string_view kBoxes = "the buffer of boxes around triangles";
-  std::vector<DeviceTriangle> sorted;
-  if (kind == HierarchyKind::wide) {
-    WideHierarchy wide = widen(sort_into_hierarchy(std::move(triangles), WideNode::kMostInLeaf));
-    LUXEL_TRY(nodes_, gpu::uploaded_or_one(commands_, wide.nodes, kBoxes));
-    sorted = std::move(wide.triangles);
-  } else {
-    BinaryHierarchy binary = sort_into_hierarchy(std::move(triangles));
-    LUXEL_TRY(nodes_, gpu::uploaded_or_one(commands_, binary.nodes, kBoxes));
-    sorted = std::move(binary.triangles);
-  }
-  LUXEL_TRY(triangles_, gpu::uploaded_or_one(commands_, sorted, "the buffer of triangles"));
+  LUXEL_TRY(nodes_, kind == HierarchyKind::wide
+                        ? gpu::uploaded_or_one(commands_, hierarchy.wide, kBoxes)
+                        : gpu::uploaded_or_one(commands_, hierarchy.binary, kBoxes));
+  LUXEL_TRY(triangles_,
+            gpu::uploaded_or_one(commands_, hierarchy.triangles, "the buffer of triangles"));
   return {};
 }
 
@@ -78,7 +64,7 @@ Status DeviceRayTracer::make_pipelines(HierarchyKind kind) {
   const bool wide = kind == HierarchyKind::wide;
   const auto make = [&](gpu::Spirv shader) {
     return gpu::make_compute_pipeline(*device_, shader, {sizeof(TracePush), {}},
-                                      {uint32_t(lets_light_through_)});
+                                      {shader_constant()});
   };
   LUXEL_TRY(closest_, make(wide ? gpu::Spirv(closest_wide_comp) : gpu::Spirv(closest_binary_comp)));
   LUXEL_TRY(occluded_,
@@ -87,10 +73,10 @@ Status DeviceRayTracer::make_pipelines(HierarchyKind kind) {
 }
 
 Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device, const scene::Scene& scene,
-                                               HierarchyKind kind) {
+                                               HierarchyKind kind, size_t max_flat_triangles) {
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   DeviceRayTracer out(device, scene, std::move(commands));
-  LUXEL_TRY_STATUS(out.upload_hierarchy(kind));
+  LUXEL_TRY_STATUS(out.upload_hierarchy(kind, max_flat_triangles));
   LUXEL_TRY_STATUS(out.make_pipelines(kind));
   return out;
 }

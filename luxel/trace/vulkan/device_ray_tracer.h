@@ -9,6 +9,7 @@
 #include "luxel/gpu/pieces.h"
 #include "luxel/gpu/pipeline.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/trace/vulkan/device_hierarchy.h"
 
 namespace luxel::trace {
 
@@ -28,9 +29,6 @@ struct DeviceHit {
 };
 static_assert(sizeof(DeviceHit) == 16 && sizeof(Ray) == 32);
 
-/// How triangles are sorted: two children a node with boxes of floats, or eight with boxes of
-/// bytes.
-enum class HierarchyKind : uint8_t { binary, wide };
 /// The kind that traced rays faster where `luxel bench gpu` was run: wide on a processor that plays
 /// a device, binary on a data-centre GPU (docs/method/gpu.md).
 HierarchyKind faster_hierarchy(const gpu::Device& device);
@@ -40,16 +38,18 @@ struct DeviceWorld {
   VkDeviceAddress nodes = 0, triangles = 0, open_materials = 0, open_triangles = 0, open_texels = 0;
 };
 
-/// Rays and triangles in a device's memory. It answers as RayTracer does, up to rounding: rays that
+/// Rays and triangles in a device's memory; meshes with several instances are stored once, as
+/// RayTracer stores them. It answers as RayTracer does, up to rounding: rays that
 /// graze an edge may meet its other side, and of surfaces that coincide either may be met. Surfaces
 /// let light through by chance as they do there: the same ray has the same luck. It knows no tints.
 /// `device` and `scene` are kept by reference and must outlive it. One thread at a time uses it.
 class DeviceRayTracer {
  public:
-  /// Errors: 2^28 - 1 triangles or more, or a scene of 10^15 m (ErrorCode::unsupported), no memory,
-  /// the device is lost.
+  /// Errors: 2^28 - 1 triangles or more to store, or a scene of 10^15 m (ErrorCode::unsupported),
+  /// no memory, the device is lost.
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
-                                       HierarchyKind kind);
+                                       HierarchyKind kind,
+                                       size_t max_flat_triangles = kMaxFlatTriangles);
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene) {
     return build(device, scene, faster_hierarchy(device));
   }
@@ -72,11 +72,14 @@ class DeviceRayTracer {
   Hit hit_of(const DeviceHit& met) const;
 
   /// For shaders that trace rays themselves: they include shaders/binary.glsl or shaders/wide.glsl,
-  /// as kind() is, and get lets_light_through() as their constant 0.
+  /// as kind() is, and get shader_constant() as their constant 0.
   DeviceWorld world() const;
   HierarchyKind kind() const { return kind_; }
-  bool lets_light_through() const { return lets_light_through_; }
+  uint32_t shader_constant() const {
+    return uint32_t(lets_light_through_) | uint32_t(has_instances_) << 1;
+  }
   const gpu::Device& device() const { return *device_; }
+  /// That are stored, places of instances among them.
   size_t triangles() const { return triangle_count_; }
 
   static constexpr size_t kRaysAtATime = 1u << 20;
@@ -84,7 +87,7 @@ class DeviceRayTracer {
 
  private:
   DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene, gpu::Commands commands);
-  Status upload_hierarchy(HierarchyKind kind);
+  Status upload_hierarchy(HierarchyKind kind, size_t max_flat_triangles);
   Status make_pipelines(HierarchyKind kind);
   Result<double> dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays, VkDeviceAddress out,
                           size_t count);
@@ -100,7 +103,8 @@ class DeviceRayTracer {
   std::vector<uint32_t> first_triangle_;
   size_t triangle_count_ = 0;
   HierarchyKind kind_ = HierarchyKind::binary;
-  bool lets_light_through_ = false;  ///< whether some triangle does: shaders without are faster
+  // Whether some triangle does, and whether meshes are shared: shaders without are faster.
+  bool lets_light_through_ = false, has_instances_ = false;
   gpu::Buffer nodes_, triangles_;
   gpu::Buffer open_materials_, open_triangles_, open_texels_;  ///< SeeThrough
   gpu::Pipeline closest_, occluded_;

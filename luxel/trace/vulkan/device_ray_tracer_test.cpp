@@ -153,6 +153,63 @@ TEST_P(DeviceRays, MeetNothingWhereNothingIs) {
   EXPECT_THAT(hits_of(tracer, {}), IsEmpty());
 }
 
+/// A hundred copies of what a scene has, turned, mirrored, stretched and sheared, and one pressed
+/// flat; among them a mesh that stands once.
+scene::Scene with_copies(scene::Scene scene) {
+  RandomStream random{23};
+  const std::vector<scene::Instance> some = scene.instances;
+  for (int k = 0; k < 100; ++k)
+    for (scene::Instance instance : some) {
+      const auto axis = [&] { return uniform_sphere_sample(random.next2()); };
+      const Vec3 x = axis() * (0.2f + random.next()), y = axis() * (0.2f + random.next());
+      const Vec3 z = k == 50 ? x + y : axis() * (0.2f + random.next());
+      const Vec3 place{20 * random.next() - 10, 20 * random.next() - 10, 20 * random.next() - 10};
+      instance.world_from_object = from_columns(x, y, z, place) * instance.world_from_object;
+      scene.instances.push_back(instance);
+    }
+  const scene::Scene once = scene::inward_sphere(9, 3, {0.5f, 0.5f, 0.5f}, {});
+  scene.meshes.push_back(once.meshes[0]);
+  for (uint32_t& material : scene.meshes.back().triangle_material) material = 0;
+  scene.instances.push_back({"once", uint32_t(scene.meshes.size() - 1), {}});
+  return scene;
+}
+
+// Meshes that are stored once are met as copies of them are: the same triangles of the same
+// instances, on the same side, at the same place. Copies that are nearly flat make ten times as
+// much of roundings.
+TEST_P(DeviceRays, MeetInstancesOfSharedMeshes) {
+  scene::Scene scene = with_copies(scene_named("spheres-and-cube.glb"));
+  std::vector<uint8_t> has_back(scene.meshes[0].triangles.size());
+  for (size_t t = 0; t < has_back.size(); t += 2) has_back[t] = 1;
+  scene::add_backs(scene, 0, has_back);
+  const std::vector<Ray> rays = rays_within(scene, 20000);
+  auto shared = DeviceRayTracer::build(*device_, scene, GetParam(), 0);
+  ASSERT_TRUE(shared) << shared.error().message;
+  DeviceRayTracer copies = built(scene);
+  EXPECT_LT(shared->triangles(), copies.triangles() / 10);
+  const std::vector<Hit> expected = hits_of(copies, rays), hits = hits_of(*shared, rays);
+  std::vector<uint8_t> blocked(rays.size());
+  ASSERT_TRUE(shared->occluded(rays, blocked));
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  size_t met = 0, other = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    met += expected[i].found();
+    EXPECT_EQ(hits[i].found(), blocked[i] != 0);
+    if (hits[i].instance != expected[i].instance || hits[i].triangle != expected[i].triangle ||
+        hits[i].back_face != expected[i].back_face) {
+      ++other;
+      continue;
+    }
+    if (!expected[i].found()) continue;
+    const Vec3 p = scene::world_position(scene, hits[i].point()),
+               q = scene::world_position(scene, expected[i].point());
+    EXPECT_LT(length(p - q), 1e-4f * diagonal_m);
+    EXPECT_NEAR(hits[i].t, expected[i].t, 1e-4f * diagonal_m);
+  }
+  EXPECT_GT(met, rays.size() / 3);
+  EXPECT_LE(other, rays.size() / 1000);
+}
+
 /// Three quads after each other in z: a mask that repeats, turned, a mirrored blend, and unfiltered
 /// glass with metal in it; each with a texture of noise.
 scene::Scene see_through_scene() {
@@ -214,6 +271,23 @@ TEST_P(DeviceRays, PassSurfacesByTheSameChance) {
     EXPECT_EQ(blocked[i] != 0, hits[i].found());
   }
   for (const size_t times : met) EXPECT_GT(times, 1000u);
+  EXPECT_LE(others, 10u);
+}
+
+// The chance follows from the ray in the world and the instance, also where the mesh is shared.
+TEST_P(DeviceRays, PassSharedSurfacesByTheSameChance) {
+  const scene::Scene scene = with_copies(see_through_scene());
+  const std::vector<Ray> rays = rays_within(scene, 20000);
+  auto shared = DeviceRayTracer::build(*device_, scene, GetParam(), 0);
+  ASSERT_TRUE(shared) << shared.error().message;
+  DeviceRayTracer copies = built(scene);
+  const std::vector<Hit> expected = hits_of(copies, rays), hits = hits_of(*shared, rays);
+  size_t met = 0, others = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    met += expected[i].found() && expected[i].instance + 1 < scene.instances.size();
+    others += hits[i].instance != expected[i].instance;
+  }
+  EXPECT_GT(met, 200u);
   EXPECT_LE(others, 10u);
 }
 

@@ -19,7 +19,8 @@ struct SeeThroughMaterial {
 };
 static_assert(sizeof(SeeThroughMaterial) == 92);
 
-/// A triangle of such a material. Places in its pictures are already transformed.
+/// A triangle of such a material. Places in its pictures are already transformed. `instance` is
+/// that of a triangle of the world; one of a shared mesh has many.
 struct SeeThroughTriangle {
   uint32_t instance = 0, triangle = 0;
   uint32_t material = 0;  ///< into SeeThrough::materials

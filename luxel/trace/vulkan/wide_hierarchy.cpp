@@ -146,18 +146,15 @@ void Maker::make(uint32_t binary_node) {
   out.nodes.push_back(node);
 }
 
-/// The largest coordinate of a box, without its sign.
-float farthest(const Box3& box) {
-  return std::max(max_component(max(box.lower, -box.lower)),
-                  max_component(max(box.upper, -box.upper)));
-}
-
 }  // namespace
 
-WideHierarchy widen(const BinaryHierarchy& binary) {
-  Box3 all;
-  all.extend(binary.nodes[0].lower0), all.extend(binary.nodes[0].upper0);
-  Maker maker{binary, 0x1p-20f * (all.diagonal() + farthest(all))};
+float reach_of(const Box3& box) {
+  return box.diagonal() + std::max(max_component(max(box.lower, -box.lower)),
+                                   max_component(max(box.upper, -box.upper)));
+}
+
+WideHierarchy widen(const BinaryHierarchy& binary, float reach) {
+  Maker maker{binary, 0x1p-20f * reach};
   maker.out.nodes.reserve(binary.nodes.size() / 4 + 1);
   maker.out.triangles.reserve(binary.triangles.size());
   maker.make(0);

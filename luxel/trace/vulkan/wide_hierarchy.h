@@ -31,8 +31,12 @@ struct WideHierarchy {
 
 /// Joins nodes of a binary hierarchy whose leaves have at most WideNode::kMostInLeaf triangles: of
 /// a node's children the one with the largest box is taken apart, until there are eight
-/// [Wald08]; the paper finds the best ones of all. Boxes grow by 2^-20 of the scene's diagonal and
-/// its largest coordinate, more than what rounding moves a ray by that begins in the scene.
-WideHierarchy widen(const BinaryHierarchy& binary);
+/// [Wald08]; the paper finds the best ones of all. Boxes grow by 2^-20 of `reach`, more than what
+/// rounding moves a ray by that begins so far from the origin.
+WideHierarchy widen(const BinaryHierarchy& binary, float reach);
+
+/// How far from the origin rays may begin that begin in a box: its diagonal and its largest
+/// coordinate.
+float reach_of(const Box3& box);
 
 }  // namespace luxel::trace

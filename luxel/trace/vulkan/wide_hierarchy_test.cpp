@@ -62,10 +62,13 @@ void walk(const WideHierarchy& h, uint32_t number, std::vector<Box3>& around,
   }
 }
 
+/// A little more than where the triangles of these tests lie.
+constexpr float kReach = 50;
+
 TEST(WideHierarchy, HoldsEachTriangleOnceInBoxesAroundIt) {
   for (const size_t count : {0, 1, 2, 9, 3000}) {
     const WideHierarchy h =
-        widen(sort_into_hierarchy(flat_and_scattered(count), WideNode::kMostInLeaf));
+        widen(sort_into_hierarchy(flat_and_scattered(count), WideNode::kMostInLeaf), kReach);
     std::vector<int> times_found(count);
     std::vector<Box3> around;
     walk(h, 0, around, times_found);
@@ -81,7 +84,7 @@ TEST(WideHierarchy, HasChildrenInTheSlotsOfTheirDirections) {
     const float x = 10.0f * float(i);
     two.push_back({{x, 0, 0}, i, {x + 1, 0, 0}, 0, {x, 1, 0}, 0});
   }
-  const WideHierarchy h = widen(sort_into_hierarchy(two, 1));
+  const WideHierarchy h = widen(sort_into_hierarchy(two, 1), kReach);
   ASSERT_EQ(h.nodes.size(), 1u);
   for (size_t slot = 0; slot < 8; ++slot) {
     if (h.nodes[0].meta[slot] == 0) continue;

@@ -74,10 +74,13 @@ float coverage_at(SeeThrough s, uint number, vec2 uv) {
   return coverage;
 }
 
-// Whether the surface lets this ray through.
-bool lets_through(SeeThrough s, uint number, vec2 uv, vec3 origin, vec3 direction) {
+// Whether the surface lets this ray through. `shared_by`: the instance of a shared mesh that is met;
+// kNotShared: the triangle has one of its own.
+const uint kNotShared = 0xffffffffu;
+bool lets_through(SeeThrough s, uint number, uint shared_by, vec2 uv, vec3 origin, vec3 direction) {
   float coverage = coverage_at(s, number, uv);
   if (coverage >= 1) return false;
   SeeThroughTriangle t = s.triangles.at[number];
-  return chance_of(origin, direction, t.instance, t.triangle) >= coverage;
+  uint instance = shared_by == kNotShared ? t.instance : shared_by;
+  return chance_of(origin, direction, instance, t.triangle) >= coverage;
 }

@@ -52,32 +52,65 @@ Meeting meet(Vectors nodes, uint index, vec3 origin, vec3 inverse, uint flip, fl
   return Meeting(Group(n1.x, (bits & 0xff000000u) | packed >> 24), Group(n1.y, bits & 0x00ffffffu));
 }
 
+// How a ray goes through boxes.
+struct Way {
+  vec3 inverse;
+  uint slot_flip, flip;
+};
+Way way_of(Space s) {
+  vec3 inverse = reciprocal(s.direction);
+  // A ray towards +x meets the slots without bit 2 first, and so on.
+  uint slot_flip = (inverse.x < 0 ? 0u : 4u) | (inverse.y < 0 ? 0u : 2u) | (inverse.z < 0 ? 0u : 1u);
+  return Way(inverse, slot_flip, slot_flip * 0x01010101u);
+}
+
 // The first triangle along the ray; with `any`, whichever is found first.
 Hit trace(World world, Ray ray, bool any) {
   Hit hit = Hit(ray.t_max, 0, 0, kNoTriangle);
-  vec3 inverse = reciprocal(ray.direction);
-  // A ray towards +x meets the slots without bit 2 first, and so on.
-  uint slot_flip = (inverse.x < 0 ? 0u : 4u) | (inverse.y < 0 ? 0u : 2u) | (inverse.z < 0 ? 0u : 1u);
-  uint flip = slot_flip * 0x01010101u;
+  Space space = world_space(ray);
+  Way way = way_of(space);
   Group stack[kMaxDepth];
-  int height = 0;
-  Meeting now = meet(world.nodes, 0, ray.origin, inverse, flip, ray.t_min, hit.t);
+  uint height = 0, entered_at = 0;  // how high the stack was when the mesh was entered
+  uint node = 0;                    // whose children are looked at next
   for (;;) {
-    while (now.triangles.bits != 0) {
-      int k = findMSB(now.triangles.bits);
-      now.triangles.bits &= ~(1u << k);
-      if (meets(world, now.triangles.first + uint(k), ray, hit) && any) return hit;
+    Meeting now = meet(world.nodes, node, space.origin, way.inverse, way.flip, ray.t_min, hit.t);
+    for (;;) {
+      bool enters = false;
+      while (now.triangles.bits != 0 && !enters) {
+        int k = findMSB(now.triangles.bits);
+        now.triangles.bits &= ~(1u << k);
+        uint triangle = now.triangles.first + uint(k);
+        if (stands_for_instance(world, triangle)) {
+          if (now.nodes.bits > 0x00ffffffu) stack[height++] = now.nodes;
+          if (now.triangles.bits != 0) stack[height++] = now.triangles;
+          entered_at = height, enters = true;
+          space = instance_space(world, triangle, ray, node);
+          way = way_of(space);
+        } else if (meets(world, triangle, ray, space, hit) && any) {
+          return hit;
+        }
+      }
+      if (enters) break;
+      if (now.nodes.bits <= 0x00ffffffu) {
+        if (kHasInstances && space.shared_by != kNotShared && height == entered_at) {
+          space = world_space(ray);
+          way = way_of(space);
+        }
+        if (height == 0) return hit;
+        Group next = stack[--height];
+        now.nodes = next;
+        if (kHasInstances && next.bits <= 0x00ffffffu) {
+          now.triangles = next, now.nodes.bits = 0;
+          continue;
+        }
+      }
+      int k = findMSB(now.nodes.bits);
+      uint inner = now.nodes.bits & 0xffu;
+      now.nodes.bits &= ~(1u << k);
+      if (now.nodes.bits > 0x00ffffffu) stack[height++] = now.nodes;
+      uint slot = (uint(k) - 24u) ^ way.slot_flip;
+      node = now.nodes.first + bitCount(inner & ~(0xffffffffu << slot));
+      break;
     }
-    if (now.nodes.bits <= 0x00ffffffu) {
-      if (height == 0) return hit;
-      now.nodes = stack[--height];
-    }
-    int k = findMSB(now.nodes.bits);
-    uint inner = now.nodes.bits & 0xffu;
-    now.nodes.bits &= ~(1u << k);
-    if (now.nodes.bits > 0x00ffffffu) stack[height++] = now.nodes;
-    uint slot = (uint(k) - 24u) ^ slot_flip;
-    uint before = bitCount(inner & ~(0xffffffffu << slot));
-    now = meet(world.nodes, now.nodes.first + before, ray.origin, inverse, flip, ray.t_min, hit.t);
   }
 }

@@ -1,0 +1,46 @@
+// All that rays on a graphics device go through: triangles of the world, and below them meshes that
+// several instances share.
+#pragma once
+
+#include "luxel/base/result.h"
+#include "luxel/trace/vulkan/see_through.h"
+#include "luxel/trace/vulkan/wide_hierarchy.h"
+
+namespace luxel::trace {
+
+/// How triangles are sorted: two children a node with boxes of floats, or eight with boxes of
+/// bytes.
+enum class HierarchyKind : uint8_t { binary, wide };
+
+/// Where an instance of a shared mesh stands; it takes the place of two triangles. In the mesh's
+/// own space no triangle is mirrored.
+struct DeviceInstance {
+  Mat34 object_from_world;
+  uint32_t root = 0;          ///< node of the mesh
+  uint32_t first_number = 0;  ///< of its triangles, in the numbering of scene::first_triangles()
+  uint32_t instance = 0;
+  std::array<uint32_t, 9> unused{};
+};
+static_assert(sizeof(DeviceInstance) == 2 * sizeof(DeviceTriangle));
+
+/// In DeviceTriangle::mirrored: it stands for an instance. `number` is the triangle whose place a
+/// DeviceInstance has; a and b are the instance's box in the world.
+inline constexpr uint32_t kStandsForInstance = 2;
+
+struct DeviceHierarchy {
+  // One is empty, by the kind.
+  std::vector<BinaryNode> binary;
+  std::vector<WideNode> wide;
+  /// Those of the world, in the order of the leaves; of shared meshes, numbered from 0 on in each;
+  /// and DeviceInstances.
+  std::vector<DeviceTriangle> triangles;
+  SeeThrough see_through;
+  bool has_instances = false;
+};
+
+/// Meshes are shared as trace::RayTracer shares them. Errors: 2^28 - 1 triangles or more are to be
+/// stored, 2^31 - 1 or more are drawn (ErrorCode::unsupported).
+Result<DeviceHierarchy> device_hierarchy(const scene::Scene& scene, HierarchyKind kind,
+                                         size_t max_flat_triangles);
+
+}  // namespace luxel::trace

@@ -210,6 +210,35 @@ TEST_P(DeviceRays, MeetInstancesOfSharedMeshes) {
   EXPECT_LE(other, rays.size() / 1000);
 }
 
+// From far away, exactly at the edges of a small sphere, in whose space the rays begin hundreds of
+// radii away. (At a corner roundings of all its edges may lead through, as they may in the world.)
+TEST_P(DeviceRays, DoNotSlipThroughASharedSurface) {
+  scene::Scene scene = scene::inward_sphere(1, 4, {0.5f, 0.5f, 0.5f}, {});
+  const scene::Mesh& mesh = scene.meshes[0];
+  const Vec3 place{30, 40, 50};
+  const Mat34 world_from_object = translation(place) * scaling({0.1f, 0.1f, 0.1f});
+  scene.instances[0].world_from_object = world_from_object;
+  scene.instances.push_back({"other", 0, translation({-60, 0, 0})});
+  auto tracer = DeviceRayTracer::build(*device_, scene, GetParam(), 0);
+  ASSERT_TRUE(tracer) << tracer.error().message;
+  std::vector<Ray> rays;
+  const auto add = [&](Vec3 p) {
+    const Vec3 target = transform_point(world_from_object, p);
+    // Not near its rim, where roundings may lead past it.
+    if (dot(normalize(target - place), normalize(place)) < -0.3f)
+      rays.push_back({{}, 0, target, INFINITY});
+  };
+  for (const auto& t : mesh.triangles)
+    for (size_t k = 0; k < 3; ++k)
+      add(0.5f * (mesh.positions[t[k]] + mesh.positions[t[(k + 1) % 3]]));
+  EXPECT_GT(rays.size(), 1000u);
+  for (const Hit& hit : hits_of(*tracer, rays)) {
+    ASSERT_TRUE(hit.found());
+    EXPECT_EQ(hit.instance, 0u);
+    EXPECT_NEAR(hit.t, 1, 1e-4f);
+  }
+}
+
 /// Three quads after each other in z: a mask that repeats, turned, a mirrored blend, and unfiltered
 /// glass with metal in it; each with a texture of noise.
 scene::Scene see_through_scene() {

@@ -108,7 +108,7 @@ void register_bake(CLI::App& app, Action& action) {
                      "Do not bake: estimate time, memory and rays from a short trial (for " +
                          pipeline::solvers_with("--plan") + ")");
   add_device(*bake, options->device,
-             "What works out gather's first direct light and first round of rays, and adds up what "
+             "What works out gather's direct light, traces its rays, and adds up what "
              "rays bring; with --solver hemicube, what looks through hemicubes; with --solver "
              "reference, what follows paths")
       ->excludes(plan);

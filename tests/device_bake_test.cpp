@@ -114,7 +114,7 @@ TEST_F(BakeOnDevice, GivesTheSameBitsEachTime) {
             slurp(scratch_.path / "again/lightmap.exr"));
 }
 
-TEST_F(BakeOnDevice, KeepsNoCheckpointAndBuildsOnNone) {
+TEST_F(BakeOnDevice, LeavesNoCheckpointAndBuildsOnNone) {
   ASSERT_EQ(bake("gpu", option_ + " --quiet --checkpoint 0.001").code, 0);
   EXPECT_EQ(files_in(scratch_.path / "gpu"), kBakeFiles);
   for (const std::string option : {"--keep", "--resume", "--layers per-light", "--light direct"}) {

@@ -40,8 +40,8 @@ BOTH uint sobol_second_reversed(uint index) {
   return index;
 }
 
-// Of the 64 points of a block, numbered from 64 * block on, the only one that lies in column x and
-// row y of 8 x 8 parts of the square. The low three bits of an index say in which column it lies;
+// The point of a block of 64, numbered from 64 * block on, that lies in column x and row y of 8 x 8
+// parts of the square: there is one. The low three bits of an index say in which column it lies;
 // bits 3 to 5 reach the three leading bits of the second coordinate by columns 3 to 5 of Pascal's
 // triangle modulo 2, which are 111, 001 and 011: solved for these bits.
 BOTH uint sample_of_eighths(uint block, uint x, uint y) {

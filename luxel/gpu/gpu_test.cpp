@@ -1,10 +1,13 @@
 // A device computes and draws what is known without one. Without a device these tests are skipped.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cstring>
 #include <numeric>
+#include <thread>
 
 #include "luxel/gpu/device_test_support.h"
+#include "luxel/gpu/pieces.h"
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/shaders/test_double.comp.h"
 #include "luxel/gpu/shaders/test_triangle.frag.h"
@@ -42,6 +45,55 @@ class Gpu : public testing::OnDevice {
     return std::move(*picture);
   }
 };
+
+/// Items of the pieces of work that takes so long for each, as the processor sees it.
+std::vector<size_t> pieces_of(Commands& commands, size_t count, size_t most, double seconds_each,
+                              PieceSize& size) {
+  std::vector<size_t> out;
+  size_t next = 0;
+  EXPECT_TRUE(
+      run_in_pieces(commands, count, most, size, [&](VkCommandBuffer, size_t first, size_t some) {
+        EXPECT_EQ(first, next);
+        next += some, out.push_back(some);
+        std::this_thread::sleep_for(std::chrono::duration<double>(seconds_each * double(some)));
+      }));
+  EXPECT_EQ(next, count);
+  return out;
+}
+
+// Pieces follow each other without a gap. They grow fourfold at most, until one takes 20 ms by what
+// the last has taken, and stay below what there may be at most. A machine that is busy makes them
+// smaller, never larger.
+TEST_F(Gpu, WorksInPiecesOfSomeMilliseconds) {
+  PieceSize size{4};
+  const std::vector<size_t> slow = pieces_of(*commands_, 300, 1000, 1e-3, size);
+  EXPECT_EQ(slow.front(), 4u);
+  for (size_t k = 1; k < slow.size(); ++k)
+    EXPECT_LE(slow[k], std::min<size_t>(4 * slow[k - 1], 20));
+  size = {4};
+  const std::vector<size_t> quick = pieces_of(*commands_, 300, 50, 0, size);
+  EXPECT_GT(quick[1], 4u);
+  for (const size_t some : quick) EXPECT_LE(some, 50u);
+  // A piece that was cut short by the end does not make the next ones small.
+  size = {100};
+  EXPECT_EQ(pieces_of(*commands_, 3, 1000, 0, size), std::vector<size_t>{3});
+  EXPECT_EQ(size.items, 100u);
+}
+
+TEST_F(Gpu, StopsBetweenPieces) {
+  Progress progress;
+  PieceSize size{1};
+  int pieces = 0;
+  const auto done = run_in_pieces(
+      *commands_, 100, 1, size,
+      [&](VkCommandBuffer, size_t, size_t) {
+        if (++pieces == 3) progress.request_cancel();
+      },
+      &progress);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::cancelled);
+  EXPECT_EQ(pieces, 3);
+}
 
 TEST_F(Gpu, ComputesOnABuffer) {
   constexpr uint32_t kCount = 1000;  // no multiple of a work group's 64

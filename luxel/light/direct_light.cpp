@@ -192,10 +192,6 @@ void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> whi
   kept.keep(part, out.bytes);
 }
 
-}  // namespace
-
-namespace {
-
 Receiver receiver_of(const transport::Elements& elements, size_t i, const DirectParams& params,
                      float diagonal_m) {
   return {elements.position[i], elements.normal[i], elements.geometric_normal[i],
@@ -209,10 +205,23 @@ void set_light(size_t element, const LightAt& light, DirectLight& direct) {
   direct.split_variance[element] = light.split_variance;
 }
 
-/// direct_light_again() by the device. Errors: as that.
+/// Keeps the parts of some of the elements, the first of which is number `first` of all. `rays`: of
+/// these elements, which every part gets a share of.
+void keep_parts(const KeptStage& kept, size_t first, std::span<const uint32_t> these,
+                const DirectLight& direct, uint64_t rays) {
+  for (size_t begin = 0; begin < these.size() && kept.wants(); begin += kPartElements) {
+    const auto part = these.subspan(begin, std::min(kPartElements, these.size() - begin));
+    keep_part(kept, (first + begin) / kPartElements, part, direct,
+              rays * part.size() / these.size());
+  }
+}
+
+/// direct_light_again() by the device, whose parts are kept for the processor. Errors: as that.
 Status light_again_on_device(const LitElements& in, std::span<const uint32_t> which,
                              const DirectParams& params, DirectLight& direct, Progress& progress) {
-  constexpr size_t kAtATime = size_t(1) << 18;  // 26 MB
+  constexpr size_t kAtATime = size_t(1) << 18;  // 20 MB, and 18 MB for the device
+  static_assert(kAtATime % kPartElements == 0);
+  const KeptStage kept = kept_stage(params, which);
   const float diagonal_m = scene::world_bounds(in.scene).diagonal();
   std::vector<Receiver> receivers;
   std::vector<LightAt> light;
@@ -228,6 +237,7 @@ Status light_again_on_device(const LitElements& in, std::span<const uint32_t> wh
               in.device->light_at(receivers, {.samples = params.samples}, light, progress));
     for (size_t k = 0; k < these.size(); ++k) set_light(these[k], light[k], direct);
     direct.rays += rays;
+    keep_parts(kept, first, these, direct, rays);
     progress.advance(these.size());
   }
   return stopped(progress);

@@ -66,8 +66,8 @@ struct LitElements {
   const transport::Elements& elements;
   const Lights& lights;
   const trace::RayTracer& tracer;
-  /// Lights them where light is not told apart, and sky_samples is 0; it keeps no parts. Null: the
-  /// processor does.
+  /// Lights them where light is not told apart, and sky_samples is 0; parts are kept, but not
+  /// looked for. Null: the processor does.
   LightDevice* device = nullptr;
 };
 

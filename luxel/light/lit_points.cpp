@@ -40,7 +40,7 @@ struct WaitingPoints {
   std::vector<uint8_t> on_side;
 };
 
-/// Receivers that wait for the device at a time, 50 MB with their light.
+/// Receivers that wait for the device at a time, 40 MB with their light.
 constexpr size_t kWaitingAtATime = size_t(1) << 19;
 
 /// Texels [first, first + count) by the device. Returns the number of rays.
@@ -94,7 +94,7 @@ Result<uint64_t> light_many_points(const TexelScene& in, size_t count, size_t mo
       LUXEL_TRY(const uint64_t more,
                 light_some_on_device(*in.light_device, first, some, asked, texels, progress));
       rays += more;
-      progress.advance(some);
+      if (texels.advances) progress.advance(some);
     }
     return rays;
   }
@@ -112,7 +112,7 @@ Result<uint64_t> light_many_points(const TexelScene& in, size_t count, size_t mo
       traced += work.batch.rays.size() + texels.end(k, work);
     }
     rays += traced;
-    progress.advance(end - begin);
+    if (texels.advances) progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
   return uint64_t(rays);

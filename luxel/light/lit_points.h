@@ -41,11 +41,11 @@ struct WorkOnPoints {
   std::function<uint64_t(size_t k, PointBuffers& work)> begin;
   /// Gets what begin() has made, and work.light of the receivers.
   std::function<uint64_t(size_t k, PointBuffers& work)> end;
+  bool advances = true;  ///< progress advances by a texel after each
 };
 
 /// Lights the points of `count` texels, on in.light_device if there is one. `most_points`: of a
-/// texel. Returns how many rays were traced; `progress` advances by texels. Errors: cancelled;
-/// those of the device.
+/// texel. Returns how many rays were traced. Errors: cancelled; those of the device.
 Result<uint64_t> light_many_points(const TexelScene& in, size_t count, size_t most_points,
                                    const LightAsked& asked, const WorkOnPoints& texels,
                                    Progress& progress);

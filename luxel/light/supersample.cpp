@@ -207,13 +207,23 @@ uint64_t Averaging::end(size_t k, PointBuffers& work) {
   return rays;
 }
 
-/// Averages on in.light_device. Returns the number of rays. Errors: as average_texels().
+/// Averages on in.light_device, whose parts are kept for the processor. Returns the number of rays,
+/// which every part gets a share of. Errors: as average_texels().
 Result<uint64_t> average_on_device(Averaging& averaging, Progress& progress) {
-  return light_many_points(averaging.in, averaging.which.size(), size_t(averaging.params.points),
-                           averaging.asked(),
-                           {[&](size_t k, PointBuffers& work) { return averaging.begin(k, work); },
-                            [&](size_t k, PointBuffers& work) { return averaging.end(k, work); }},
-                           progress);
+  const std::span<const uint32_t> which = averaging.which;
+  const KeptStage kept = kept_stage(averaging.params, which, averaging.direct);
+  const WorkOnPoints texels{[&](size_t k, PointBuffers& work) { return averaging.begin(k, work); },
+                            [&](size_t k, PointBuffers& work) { return averaging.end(k, work); }};
+  LUXEL_TRY(const uint64_t rays,
+            light_many_points(averaging.in, which.size(), size_t(averaging.params.points),
+                              averaging.asked(), texels, progress));
+  for (size_t begin = 0; begin < which.size() && kept.wants(); begin += kSupersampleGrain) {
+    const size_t count = std::min(kSupersampleGrain, which.size() - begin);
+    keep_part(kept, begin / kSupersampleGrain, which.subspan(begin, count),
+              std::span(averaging.is_averaged).subspan(begin, count), averaging.direct,
+              rays * count / which.size());
+  }
+  return rays;
 }
 
 /// Averages by the processor, whose parts are kept. Returns the number of rays. Errors: cancelled.

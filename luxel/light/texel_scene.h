@@ -19,7 +19,8 @@ struct TexelScene {
   const transport::Elements& elements;
   const Lights& lights;
   const trace::RayTracer& tracer;
-  /// Works direct light out where light is not told apart; keeps no parts. Null: the processor.
+  /// Works direct light out where light is not told apart; parts are kept, but not looked for.
+  /// Null: the processor.
   LightDevice* light_device = nullptr;
 };
 

@@ -124,40 +124,77 @@ bool any_differs(std::span<const LightAt> light, const LightAt& from, Rgb others
   });
 }
 
+/// Texels whose points may lie in flecks of sun.
+struct FleckScene {
+  const TexelScene& in;
+  const SupersampleParams& params;
+  const DirectLight& direct;
+  PointScene place;
+
+  /// The sample of a texel.
+  Receiver sample_of(uint32_t texel) const {
+    Receiver out = own_receiver(place, in.elements, texel);
+    out.seed = hash64(params.direct.seed, texel);
+    return out;
+  }
+};
+
 /// Light of punctual lights, by one ray at each of some texels' points and at the sample.
 struct PunctualLook {
-  std::vector<std::vector<LightAt>> light;  ///< per texel, the sample's last
+  std::vector<uint32_t> texels;             ///< those whose points differ
+  std::vector<std::vector<LightAt>> light;  ///< of each of them, the sample's last
   uint64_t rays = 0;
 };
 
-/// Looks at all texels of `which`, and leaves those there whose points differ.
-Result<PunctualLook> look_at_punctual_lights(const TexelScene& in, const SupersampleParams& params,
-                                             std::vector<uint32_t>& which, Progress& progress) {
-  const PointScene place = point_scene(in);
-  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
-  const uint64_t seed = params.direct.seed;
-  std::vector<uint8_t> differs(which.size());
-  std::vector<std::vector<LightAt>> light(which.size());
+/// Looks at texels, the first of which is number `first` of `cover`.
+Result<PunctualLook> look_at_punctual_lights(const FleckScene& from, const atlas::Cover& cover,
+                                             size_t first, std::span<const uint32_t> texels,
+                                             Progress& progress) {
+  const TexelScene& in = from.in;
+  const SupersampleParams& params = from.params;
+  PunctualLook out{{texels.begin(), texels.end()},
+                   std::vector<std::vector<LightAt>>(texels.size())};
+  std::vector<uint8_t> differs(texels.size());
   const auto begin = [&](size_t k, PointBuffers& work) {
-    const uint32_t i = which[k];
-    atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), kFleckPoints, seed, work.spread);
-    receive_at_points(place, seed, i, work);
-    work.receivers.push_back(own_receiver(place, in.elements, i));
-    work.receivers.back().seed = hash64(seed, i);
+    atlas::spread_points(in.atlas, in.map.texels[texels[k]], cover.of(first + k), kFleckPoints,
+                         params.direct.seed, work.spread);
+    receive_at_points(from.place, params.direct.seed, texels[k], work);
+    work.receivers.push_back(from.sample_of(texels[k]));
     return uint64_t(0);
   };
   const auto end = [&](size_t k, PointBuffers& work) {
     differs[k] = any_differs(work.light, work.light.back(), {}, params.threshold);
-    if (differs[k]) light[k] = work.light;
+    if (differs[k]) out.light[k] = work.light;
     return uint64_t(0);
   };
-  progress.begin("supersample", which.size());
-  LUXEL_TRY(const uint64_t rays,
-            light_many_points(in, which.size(), kFleckPoints + 1,
+  LUXEL_TRY(out.rays,
+            light_many_points(in, texels.size(), kFleckPoints + 1,
                               {.samples = 1, .punctual_alone = true}, {begin, end}, progress));
-  keep_marked(differs, which);
-  std::erase_if(light, [](const std::vector<LightAt>& l) { return l.empty(); });
-  return PunctualLook{std::move(light), rays};
+  keep_marked(differs, out.texels);
+  std::erase_if(out.light, [](const std::vector<LightAt>& l) { return l.empty(); });
+  return out;
+}
+
+/// Leaves those of `look.texels` that differ from their samples by more than the noise of those,
+/// which are looked at with more rays. Returns the number of rays.
+Result<uint64_t> keep_beyond_noise(const FleckScene& from, PunctualLook& look, Progress& progress) {
+  std::vector<uint8_t> flecked(look.texels.size());
+  const auto begin = [&](size_t k, PointBuffers& work) {
+    work.receivers.push_back(from.sample_of(look.texels[k]));
+    return uint64_t(0);
+  };
+  const auto end = [&](size_t k, PointBuffers& work) {
+    const LightAt& own = work.light.front();
+    const Rgb others = max(from.direct.irradiance[look.texels[k]] - own.irradiance, Rgb{});
+    flecked[k] = any_differs(look.light[k], own, others, from.params.threshold);
+    return uint64_t(0);
+  };
+  LUXEL_TRY(const uint64_t rays,
+            light_many_points(from.in, look.texels.size(), 1,
+                              {.samples = kRaysOfSample, .punctual_alone = true},
+                              {.begin = begin, .end = end, .advances = false}, progress));
+  keep_marked(flecked, look.texels);
+  return rays;
 }
 
 /// Keeps those of `which` in which some points are in the light of a punctual light and others are
@@ -166,30 +203,25 @@ Result<PunctualLook> look_at_punctual_lights(const TexelScene& in, const Supersa
 Result<uint64_t> keep_flecked(const TexelScene& in, const SupersampleParams& params,
                               const DirectLight& direct, std::vector<uint32_t>& which,
                               Progress& progress) {
-  const PointScene place = point_scene(in);
-  const uint64_t seed = params.direct.seed;
-  // 1. Mostly all points and the sample are in the light, or none is.
-  LUXEL_TRY(const PunctualLook look, look_at_punctual_lights(in, params, which, progress));
-  // 2. Where they differ, the sample is looked at with more rays.
-  std::vector<uint8_t> flecked(which.size());
-  const auto begin = [&](size_t k, PointBuffers& work) {
-    work.receivers.push_back(own_receiver(place, in.elements, which[k]));
-    work.receivers.back().seed = hash64(seed, which[k]);
-    return uint64_t(0);
-  };
-  const auto end = [&](size_t k, PointBuffers& work) {
-    const LightAt& own = work.light.front();
-    const Rgb others = max(direct.irradiance[which[k]] - own.irradiance, Rgb{});
-    flecked[k] = any_differs(look.light[k], own, others, params.threshold);
-    return uint64_t(0);
-  };
+  // The light of so many is there at a time: 12 MB at most.
+  constexpr size_t kTexelsAtATime = size_t(1) << 15;
+  const FleckScene from{in, params, direct, point_scene(in)};
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
+  std::vector<uint32_t> kept;
+  uint64_t rays = 0;
   progress.begin("supersample", which.size());
-  LUXEL_TRY(
-      const uint64_t rays,
-      light_many_points(in, which.size(), 1, {.samples = kRaysOfSample, .punctual_alone = true},
-                        {begin, end}, progress));
-  keep_marked(flecked, which);
-  return look.rays + rays;
+  for (size_t first = 0; first < which.size(); first += kTexelsAtATime) {
+    const size_t count = std::min(kTexelsAtATime, which.size() - first);
+    // Mostly all points and the sample are in the light, or none is.
+    LUXEL_TRY(PunctualLook look,
+              look_at_punctual_lights(from, cover, first, std::span(which).subspan(first, count),
+                                      progress));
+    LUXEL_TRY(const uint64_t again, keep_beyond_noise(from, look, progress));
+    kept.insert(kept.end(), look.texels.begin(), look.texels.end());
+    rays += look.rays + again;
+  }
+  which = std::move(kept);
+  return rays;
 }
 
 /// Those of `among` that are not in `known` and face a punctual light; all in the order of the map.

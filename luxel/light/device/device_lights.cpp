@@ -38,9 +38,7 @@ static_assert(sizeof(DevicePunctualLight) == 76);
 /// The emission of a triangle light.
 struct LightTexture {
   Rgb emission;
-  uint32_t is_placed;          ///< whether its mesh has texture coordinates
-  std::array<Vec2, 3> places;  ///< of a, b and c in the picture
-  trace::DevicePicture picture;
+  trace::PlacedPicture picture;  ///< its places are those of a, b and c
 };
 static_assert(sizeof(LightTexture) == 64);
 
@@ -105,16 +103,13 @@ LightTexture light_texture(const scene::Scene& scene, const TriangleLight& light
                            trace::DevicePictures& pictures) {
   const scene::Material& material = material_of(scene, light);
   const scene::Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
-  const scene::TextureRef& ref = material.emission_texture;
-  LightTexture out{.emission = material.emission,
-                   .is_placed = !trace::texture_coordinates(mesh, ref).empty(),
-                   .places = {},
-                   .picture = pictures.picture(ref)};
-  const std::array<Vec2, 3> corners = trace::places_in_picture(mesh, light.triangle, ref);
+  LightTexture out{material.emission,
+                   pictures.placed(mesh, light.triangle, material.emission_texture)};
+  const std::array<Vec2, 3> corners = out.picture.places;
   for (size_t k = 0; k < 3; ++k) {
     Barycentric at = light.part[k];
     if (light.flipped) std::swap(at.u, at.v);
-    out.places[k] = corners[0] * (1 - at.u - at.v) + corners[1] * at.u + corners[2] * at.v;
+    out.picture.places[k] = corners[0] * (1 - at.u - at.v) + corners[1] * at.u + corners[2] * at.v;
   }
   return out;
 }

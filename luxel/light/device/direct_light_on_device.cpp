@@ -12,6 +12,8 @@ namespace luxel::light {
 namespace {
 
 constexpr size_t kGroup = 64;  // as the shaders have it
+/// Groups of receivers, each with any number of rays.
+constexpr gpu::PieceSize kFirstPiece{64};
 /// Receivers that are sent at a time: 11 MB.
 constexpr size_t kReceiversAtATime = size_t(1) << 18;
 
@@ -107,15 +109,6 @@ Status DeviceDirectLight::make_room(size_t count) {
   return {};
 }
 
-/// A receiver with four times the samples takes four times as long.
-void DeviceDirectLight::fit_pieces(int samples) {
-  constexpr size_t kFirstThreadSamples = 64 * 64 * 64;
-  if (samples == piece_samples_) return;
-  piece_samples_ = samples;
-  for (Step& step : steps_)
-    step.piece.items = std::max<size_t>(kFirstThreadSamples / (kGroup * size_t(samples)), 1);
-}
-
 /// Works the light of the first `count` receivers of sent_ out: it lies in answered_ then.
 Status DeviceDirectLight::light_sent(size_t count, const LightAsked& asked,
                                      const Progress& progress) {
@@ -129,13 +122,12 @@ Status DeviceDirectLight::light_sent(size_t count, const LightAsked& asked,
                         .light = light_.address,
                         .count = uint32_t(count),
                         .samples = uint32_t(asked.samples)};
-  fit_pieces(asked.samples);
   // Each step adds to what those before it have found.
   for (Step& step : steps_) {
     if (asked.punctual_alone && !step.is_punctual) continue;
-    LUXEL_TRY(const double took,
-              gpu::run_groups(*commands_, step.pipeline, push, (count + kGroup - 1) / kGroup,
-                              step.piece, &progress));
+    gpu::PieceSize& piece = step.pieces.try_emplace(asked.samples, kFirstPiece).first->second;
+    LUXEL_TRY(const double took, gpu::run_groups(*commands_, step.pipeline, push,
+                                                 (count + kGroup - 1) / kGroup, piece, &progress));
     seconds_ += took;
   }
   return gpu::copy_bytes(*commands_, light_, answered_, count * sizeof(DeviceLightAt));

@@ -1,6 +1,8 @@
 // Light that arrives straight from the sources, worked out by a graphics device.
 #pragma once
 
+#include <map>
+
 #include "luxel/light/device/device_lights.h"
 #include "luxel/light/light_device.h"
 
@@ -27,13 +29,12 @@ class DeviceDirectLight final : public LightDevice {
   struct Step {
     gpu::Pipeline pipeline;
     bool is_punctual = false;
-    gpu::PieceSize piece{};  ///< of groups of 64 receivers with piece_samples_ samples
+    std::map<int, gpu::PieceSize> pieces;  ///< of groups of 64 receivers, by their samples
   };
 
   explicit DeviceDirectLight(gpu::Commands& commands) : commands_(&commands) {}
   Status make_steps(const trace::DeviceRayTracer& tracer, const Lights& lights);
   Status make_room(size_t count);
-  void fit_pieces(int samples);
   Status light_sent(size_t count, const LightAsked& asked, const Progress& progress);
 
   gpu::Commands* commands_;
@@ -41,7 +42,6 @@ class DeviceDirectLight final : public LightDevice {
   std::vector<Step> steps_;
   gpu::Buffer sent_, receivers_, light_, answered_;
   size_t room_ = 0;  ///< receivers that the buffers have room for
-  int piece_samples_ = 0;
   double seconds_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "luxel/pipeline/solver/on_device.h"
 #include "luxel/pipeline/solver/solvers.h"
 
 namespace luxel::pipeline {
@@ -28,8 +29,7 @@ Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepe
   const std::string why = option + " works on the processor alone";
   if (!keepers.device->is_optional)
     return fail(ErrorCode::bad_setting, "{}; leave it or --device out", why);
-  warnings.push_back(
-      fmt::format("done by the processor, not by {}: {}", keepers.device->name, why));
+  warnings.push_back(warning_without(*keepers.device, why));
   Keepers out = keepers;
   out.device = nullptr;
   return out;

@@ -181,10 +181,9 @@ Result<gather::Gather> run(const GatherCall& call, Progress& progress) {
   return gather::gather(call.in, call.layers, call.params, call.stores, call.observer, progress);
 }
 
-/// gather() with the first rays on a device. It keeps no parts: of the first round there are none.
-/// Errors: those of gather().
+/// gather() on a device. Errors: those of gather().
 Result<gather::Gather> run_on(const BakeDevice& on, GatherCall call, Progress& progress) {
-  call.stores.device = on.rays, call.stores.parts = nullptr;
+  call.stores.device = on.rays;
   // Where the device fails, the processor looks at all places again.
   const std::function<void()> on_traced = std::move(call.observer.on_traced);
   call.observer.on_traced = on.is_optional ? std::function<void()>() : on_traced;
@@ -194,19 +193,16 @@ Result<gather::Gather> run_on(const BakeDevice& on, GatherCall call, Progress& p
 }
 
 /// gather() on the device, if there is one; where that is optional and fails, all of it on the
-/// processor, with a warning. `device` gets the name of that which had the rays. Errors: those of
-/// gather().
-Result<gather::Gather> gather_on_any(const BakeDevice* on, GatherCall call, std::string& device,
-                                     std::vector<std::string>& warnings, Progress& progress) {
-  if (!on) return run(call, progress);
+/// processor in the time that is left. `part` gets what had the rays. Errors: those of gather().
+Result<gather::Gather> gather_on_any(const BakeDevice* on, GatherCall call, TookPart& part,
+                                     Progress& progress) {
   const auto start = Clock::now();
-  auto out = run_on(*on, call, progress);
-  if (out) device = on->name;
-  if (out || !may_go_on_without(*on, out.error())) return out;
-  warnings.push_back(warning_without(*on, out.error()));
-  if (call.params.seconds > 0)
-    call.params.seconds = std::max(call.params.seconds - seconds_since(start), 1e-3);
-  return run(call, progress);
+  const double seconds = call.params.seconds;
+  const auto gather_on = [&](const BakeDevice* device) {
+    if (seconds > 0) call.params.seconds = std::max(seconds - seconds_since(start), 1e-3);
+    return device ? run_on(*device, call, progress) : run(call, progress);
+  };
+  return run_on_any(on, gather_on, part);
 }
 
 Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings& settings,
@@ -251,17 +247,17 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
                                                .is_watched = observer.is_watched,
                                                .on_bounce = observer.on_bounce,
                                                .on_traced = observer.on_traced}};
-  std::string device;
-  LUXEL_TRY(gather::Gather result, gather_on_any(stores.device, call, device, warnings, progress));
+  TookPart part{.device = {}, .warnings = std::move(warnings)};
+  LUXEL_TRY(gather::Gather result, gather_on_any(stores.device, call, part, progress));
   const light::LightLayers all_layers = layers;
   const gather::SourceLight sources = std::move(result.sources);
   TexelLight out = light_of(result, layers);
-  out.device = std::move(device);
+  out.device = std::move(part.device);
   if (keeps) stores.cache->keep(kept_bake(in, all_layers, result, out));
   if (settings.layers == light::LayerMode::none) drop_layers(out);
   if (settings.max_error > 0 || settings.time_budget_s > 0)
-    warn_about_rounds(settings, params, result, warnings);
-  out.warnings = std::move(warnings);
+    warn_about_rounds(settings, params, result, part.warnings);
+  out.warnings = std::move(part.warnings);
   take_part(settings.light, sources, out);
   return out;
 }

@@ -8,8 +8,8 @@ bool may_go_on_without(const BakeDevice& on, const Error& error) {
           error.code == ErrorCode::out_of_memory);
 }
 
-std::string warning_without(const BakeDevice& on, const Error& error) {
-  return fmt::format("done by the processor, not by {}: {}", on.name, error.message);
+std::string warning_without(const BakeDevice& on, std::string_view why) {
+  return fmt::format("done by the processor, not by {}: {}", on.name, why);
 }
 
 }  // namespace luxel::pipeline

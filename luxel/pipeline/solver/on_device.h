@@ -13,8 +13,8 @@ namespace luxel::pipeline {
 /// that a device can have.
 bool may_go_on_without(const BakeDevice& on, const Error& error);
 
-/// The warning that says so.
-std::string warning_without(const BakeDevice& on, const Error& error);
+/// The warning that the processor has done it, and why: a part of a sentence.
+std::string warning_without(const BakeDevice& on, std::string_view why);
 
 /// What took part in a bake, and what there is to say of it.
 struct TookPart {
@@ -23,14 +23,14 @@ struct TookPart {
 };
 
 /// run(on), a Result, where there is a device; run(nullptr), on the processor, where there is none,
-/// or an optional one has failed. `part`: a TookPart, or what has its members.
+/// or then where an optional one has failed. `part`: a TookPart, or what has its members.
 template <class Run, class Part>
 auto run_on_any(const BakeDevice* on, const Run& run, Part& part) {
   auto out = run(on);
   if (!on) return out;
   if (out) part.device = on->name;
   if (out || !may_go_on_without(*on, out.error())) return out;
-  part.warnings.push_back(warning_without(*on, out.error()));
+  part.warnings.push_back(warning_without(*on, out.error().message));
   return run(static_cast<const BakeDevice*>(nullptr));
 }
 

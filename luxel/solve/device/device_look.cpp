@@ -42,6 +42,7 @@ struct SeenTriangle {
   uint32_t other_side;
   uint32_t flags;
   Rgb emission;
+  uint32_t picture = 0;  ///< 1 + a number of SeenScene::pictures; 0: none
 
   static constexpr uint32_t kTwoSided = 1, kEmissive = 2;
 };
@@ -57,6 +58,7 @@ struct DeviceView {
 struct LookSetup {
   trace::DeviceWorld world;
   VkDeviceAddress triangles, nodes, pixels, around;
+  VkDeviceAddress pictures, texels, linear_of_byte;
   uint32_t pixel_count, element_count;
   uint32_t per_vertex;
   uint32_t unused = 0;
@@ -66,8 +68,8 @@ struct LookPush {
   uint32_t first_group = 0, unused = 0;
 };
 static_assert(sizeof(DevicePixel) == 20 && sizeof(DeviceViewpoint) == 60);
-static_assert(sizeof(SeenTriangle) == 28 && sizeof(DeviceNode) == 40 && sizeof(DeviceView) == 20);
-static_assert(sizeof(LookSetup) == 88);
+static_assert(sizeof(SeenTriangle) == 32 && sizeof(DeviceNode) == 40 && sizeof(DeviceView) == 20);
+static_assert(sizeof(LookSetup) == 112);
 
 /// Factors as whole numbers: what rounding takes from one the next gets.
 std::vector<DevicePixel> device_pixels(std::span<const hemicube::Pixel> pixels) {
@@ -83,38 +85,39 @@ std::vector<DevicePixel> device_pixels(std::span<const hemicube::Pixel> pixels) 
   return out;
 }
 
-/// Whether pixels see emission with a texture.
-bool shines_unevenly(const hemicube::Senders& s) {
-  if (!s.emission_by_pixels) return false;
-  for (const scene::Instance& i : s.scene.instances) {
-    const scene::Mesh& mesh = s.scene.meshes[i.mesh];
-    for (const uint32_t number : mesh.triangle_material) {
-      const scene::Material& m = s.scene.materials[number];
-      const scene::TextureRef& ref = m.emission_texture;
-      if (max_component(m.emission) > 0 && ref.texture != scene::kNone &&
-          !trace::texture_coordinates(mesh, ref).empty())
-        return true;
-    }
-  }
-  return false;
+/// Triangles of a scene as hemicubes see them, and pictures of their emission.
+struct SeenScene {
+  std::vector<SeenTriangle> triangles;
+  std::vector<trace::PlacedPicture> pictures;
+  std::vector<uint32_t> texels;
+};
+
+/// Adds a triangle of an instance.
+void add_seen(const hemicube::Senders& s, uint32_t instance, uint32_t triangle,
+              trace::DevicePictures& pictures, SeenScene& out) {
+  const scene::Mesh& mesh = s.scene.meshes[s.scene.instances[instance].mesh];
+  const scene::Material& m = s.scene.materials[mesh.triangle_material[triangle]];
+  const bool shines = s.emission_by_pixels && max_component(m.emission) > 0;
+  const bool is_sheet = !mesh.other_side.empty() && mesh.other_side[triangle] != scene::kNone;
+  out.triangles.push_back(
+      {.first_root = s.mesh.first_root[out.triangles.size()],
+       .grid = s.mesh.grid[instance],
+       .other_side = is_sheet ? s.mesh.first_triangle[instance] + mesh.other_side[triangle]
+                              : trace::DeviceHit::kNoTriangle,
+       .flags = (scene::reflects_from_behind(m) ? SeenTriangle::kTwoSided : 0) |
+                (shines ? SeenTriangle::kEmissive : 0),
+       .emission = m.emission});
+  if (!shines || m.emission_texture.texture == scene::kNone) return;
+  out.pictures.push_back(pictures.placed(mesh, triangle, m.emission_texture));
+  out.triangles.back().picture = uint32_t(out.pictures.size());
 }
 
-std::vector<SeenTriangle> seen_triangles(const hemicube::Senders& s) {
-  std::vector<SeenTriangle> out;
+SeenScene seen_scene(const hemicube::Senders& s) {
+  SeenScene out;
+  trace::DevicePictures pictures(s.scene, out.texels);
   for (uint32_t i = 0; i < s.scene.instances.size(); ++i) {
-    const scene::Mesh& mesh = s.scene.meshes[s.scene.instances[i].mesh];
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const scene::Material& m = s.scene.materials[mesh.triangle_material[t]];
-      const bool shines = s.emission_by_pixels && max_component(m.emission) > 0;
-      const bool is_sheet = !mesh.other_side.empty() && mesh.other_side[t] != scene::kNone;
-      out.push_back({.first_root = s.mesh.first_root[out.size()],
-                     .grid = s.mesh.grid[i],
-                     .other_side = is_sheet ? s.mesh.first_triangle[i] + mesh.other_side[t]
-                                            : trace::DeviceHit::kNoTriangle,
-                     .flags = (scene::reflects_from_behind(m) ? SeenTriangle::kTwoSided : 0) |
-                              (shines ? SeenTriangle::kEmissive : 0),
-                     .emission = m.emission});
-    }
+    const size_t count = s.scene.meshes[s.scene.instances[i].mesh].triangles.size();
+    for (uint32_t t = 0; t < count; ++t) add_seen(s, i, t, pictures, out);
   }
   return out;
 }
@@ -153,6 +156,7 @@ struct Looking {
   gpu::Commands& commands;
   size_t elements, at_a_time;
   gpu::Buffer triangles{}, nodes{}, pixels{}, setup{};
+  gpu::Buffer pictures{}, texels{}, linear_of_byte{};
   DeviceSurroundings around{};
   gpu::Buffer from{}, from_sent{}, views{}, views_back{}, shares{}, shares_back{};
 };
@@ -190,7 +194,13 @@ Status make_room(Looking& l) {
 
 Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
                std::span<const hemicube::Pixel> pixels, Looking& l) {
-  LUXEL_TRY(l.triangles, uploaded(l.commands, seen_triangles(s)));
+  const SeenScene seen = seen_scene(s);
+  constexpr std::string_view kPictures = "the buffer of pictures that shine";
+  LUXEL_TRY(l.triangles, uploaded(l.commands, seen.triangles));
+  LUXEL_TRY(l.pictures, gpu::uploaded_or_one(l.commands, seen.pictures, kPictures));
+  LUXEL_TRY(l.texels, gpu::uploaded_or_one(l.commands, seen.texels, kPictures));
+  LUXEL_TRY(l.linear_of_byte,
+            gpu::uploaded_or_one(l.commands, trace::linear_of_bytes(), kPictures));
   LUXEL_TRY(l.nodes, uploaded(l.commands, device_nodes(s)));
   LUXEL_TRY(l.pixels, uploaded(l.commands, device_pixels(pixels)));
   LUXEL_TRY(l.around, upload_surroundings(l.commands, s.scene.environment, s.around));
@@ -199,6 +209,9 @@ Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
                         .nodes = l.nodes.address,
                         .pixels = l.pixels.address,
                         .around = l.around.values.address,
+                        .pictures = l.pictures.address,
+                        .texels = l.texels.address,
+                        .linear_of_byte = l.linear_of_byte.address,
                         .pixel_count = uint32_t(pixels.size()),
                         .element_count = uint32_t(l.elements),
                         .per_vertex = s.receivers.kind == hemicube::ElementKind::vertex};
@@ -285,11 +298,6 @@ class DeviceLook final : public hemicube::LookDevice {
                                      const hemicube::LookParams& params,
                                      const hemicube::OnView& done, Progress& progress) override {
     LUXEL_CHECK(tracer_ && senders.receivers.size() > 0);
-    if (shines_unevenly(senders))
-      return fail(
-          ErrorCode::unsupported,
-          "hemicubes on the device know no texture of emission where more than 32 triangles "
-          "shine: bake the scene on the processor");
     LUXEL_TRY(const std::vector<hemicube::Pixel> pixels,
               hemicube::pixels_in_tiles(params.resolution, progress));
     constexpr size_t kTile = hemicube::kTileElements;

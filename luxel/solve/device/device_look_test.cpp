@@ -160,27 +160,25 @@ TEST_F(HemicubesOnDevice, SolveTheSame) {
   EXPECT_LT(std::abs(d.bias), 2e-4);
 }
 
-TEST_F(HemicubesOnDevice, RefuseTexturedLightThatPixelsSee) {
-  scene::Scene scene = leaf_under_a_sky(false);
-  scene::Texture& texture = scene.textures.emplace_back();
-  texture.width = texture.height = 1, texture.rgba = {255, 128, 0, 255};
-  scene.materials[1].emission_texture.texture = 0;
-  for (scene::Mesh& m : scene.meshes) m.uv0.resize(m.positions.size());
-  const hemicube::Mesh mesh = hemicube::testing::mesh_of(scene);
-  const hemicube::Receivers receivers = make_receivers(scene, mesh, ElementKind::vertex);
-  const auto tracer = trace::RayTracer::build(scene);
-  ASSERT_TRUE(tracer);
-  const light::Surroundings around = light::surroundings_of(scene);
-  Progress progress;
-  ASSERT_TRUE(device_look_->begin(scene));
-  const auto none = [](size_t, const hemicube::View&) -> Status { return {}; };
-  const auto from = hemicube::viewpoints(receivers.elements);
-  const auto light =
-      device_look_->look({scene, *tracer, mesh, receivers, around, true}, from, {}, none, progress);
-  ASSERT_FALSE(light);
-  EXPECT_EQ(light.error().code, ErrorCode::unsupported);
-  EXPECT_TRUE(device_look_->look({scene, *tracer, mesh, receivers, around, false}, from,
-                                 {.resolution = 2}, none, progress));
+// A leaf that glows in the colours of a picture, with texels of its own on both sides or not; and
+// one whose mesh has no coordinates, which glows as its material says.
+TEST_F(HemicubesOnDevice, SeePicturesThatShine) {
+  for (const bool has_both_sides : {false, true})
+    for (const bool has_coordinates : {false, true}) {
+      scene::Scene scene = leaf_under_a_sky(false);
+      scene::Texture& texture = scene.textures.emplace_back();
+      texture.width = 4, texture.height = 3;
+      for (int k = 0; k < 12; ++k)
+        for (const int c : {k * 20, 255 - k * 17, k % 2 * 200, 255})
+          texture.rgba.push_back(uint8_t(c));
+      scene.materials[1].emission_texture.texture = 0;
+      scene::Mesh& leaf = scene.meshes[scene.instances[1].mesh];
+      if (has_coordinates)
+        for (const Vec3& p : leaf.positions) leaf.uv0.push_back({2 * p.x, p.z + 0.3f * p.x});
+      if (has_both_sides)
+        scene::add_backs(scene, scene.instances[1].mesh, std::vector<uint8_t>{1, 1});
+      expect_the_same(scene, hemicube::testing::mesh_of(scene, 0.3f), ElementKind::vertex);
+    }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "luxel/scene/shapes.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "tests/scratch_folder.h"
 
 namespace luxel::device {
 namespace {
@@ -194,6 +195,56 @@ TEST_F(BakesOnDevice, HaveTheRoundsOfTheProcessor) {
     EXPECT_NEAR(double(found.rays), double(expected.rays), 1e-2 * double(expected.rays));
     EXPECT_NEAR(found.relative_error, expected.relative_error, 0.02 * expected.relative_error);
   }
+}
+
+/// Has rays and light, and fails when it is to sweep.
+class LostLater final : public gather::RayDevice {
+ public:
+  explicit LostLater(const gpu::Device& device) : inner_(gather_device(device)) {}
+
+  Status begin(const gather::TraceScene& in) override { return inner_->begin(in); }
+  Result<light::LightDevice*> light_device(const gather::TraceScene& in) override {
+    return inner_->light_device(in);
+  }
+  Status trace(const gather::TraceScene& in, std::span<const uint16_t> target,
+               const gather::TraceParams& params, gather::TracedHits& hits,
+               Progress& progress) override {
+    return inner_->trace(in, target, params, hits, progress);
+  }
+  Status sweep(const gather::RadiosityMap&, std::span<gather::Gathered>) override {
+    return fail(ErrorCode::no_device, "the cable is out");
+  }
+  void forget() override { inner_->forget(); }
+
+ private:
+  std::unique_ptr<gather::RayDevice> inner_;
+};
+
+// The processor traces no ray and lights no place again that the device has kept: it goes on with
+// the sweeps.
+TEST_F(BakesOnDevice, GoOnWhereTheDeviceWasLost) {
+  const auto room = gather::lay_out(block_in_the_sun(), 48);
+  gather::GatherParams params = gather::with_samples(100, 16);
+  params.supersample = 16;
+  const gather::Gather expected = solve(*room, params);
+  const testing_support::ScratchFolder folder;
+  Progress progress;
+  PartStore parts({.file = folder.path / "parts", .header = "test", .interval_s = 1e-9}, progress);
+  LostLater lost(*device_);
+  const auto failed = gather::gather(gather::scene_of(*room), nullptr, params,
+                                     {.parts = &parts, .device = &lost}, {}, progress);
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().message, "the cable is out");
+  const uint64_t kept = parts.parts_kept();
+  EXPECT_GT(kept, 2 * (room->elements.size() / gather::kTileElements));
+  const auto found =
+      gather::gather(gather::scene_of(*room), nullptr, params, {.parts = &parts}, {}, progress);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(parts.parts_found(), kept) << "all of them";
+  EXPECT_EQ(parts.parts_kept(), kept) << "and none had to be made";
+  EXPECT_EQ(found->direct, expected.direct);
+  const Differences d = differences(luminances(found->irradiance), luminances(expected.irradiance));
+  EXPECT_LT(d.rms, 1e-4) << "sums in another order";
 }
 
 }  // namespace

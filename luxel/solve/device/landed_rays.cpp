@@ -15,6 +15,7 @@
 #include "luxel/solve/device/shaders/landed_rays_wide.comp.h"
 #include "luxel/solve/gather/rays/ray_tile.h"
 #include "luxel/solve/gather/trace/follow_many.h"
+#include "luxel/solve/gather/trace/kept_hits.h"
 #include "luxel/solve/gather/trace/scene_of_rays.h"
 
 namespace luxel::device {
@@ -66,11 +67,12 @@ static_assert(sizeof(LightPush) == 80 && sizeof(gather::EscapedLight) == 20);
 struct Round {
   const DeviceScene& scene;
   const gather::SceneOfRays& on_processor;
+  KeptStage kept;
   RaySeeds seeds;
   LandedRays& rays;
   gather::TracedHits& hits;
   gpu::Buffer shares{};
-  // Of the chunk that has the most slots.
+  // Room for the chunk that has the most slots:
   gpu::Buffer counts{};  ///< EndCounts of each
   gpu::Buffer light{};   ///< gather::EscapedLight of each, where light comes from around
   OpenList open{};
@@ -215,19 +217,25 @@ void take_element(const RaySlot& slot, const EndCounts& counts, const gather::Es
   add(counts.lit_back, hits.met_double_sided_back[i]);
 }
 
-Status take_counts(std::span<const RaySlot> slots, Round& round) {
+/// take_element() of a chunk's slots. Returns how many rays each has.
+Result<std::vector<uint32_t>> take_counts(std::span<const RaySlot> slots, Round& round) {
   LUXEL_TRY(const auto counts, downloaded<EndCounts>(round.commands(), round.counts, slots.size()));
   std::vector<gather::EscapedLight> light(slots.size());
   if (!round.rays.is_dark_around) {
     LUXEL_TRY(light, downloaded<gather::EscapedLight>(round.commands(), round.light, slots.size()));
   }
-  for (size_t k = 0; k < slots.size(); ++k) take_element(slots[k], counts[k], light[k], round);
-  return {};
+  std::vector<uint32_t> rays;
+  for (size_t k = 0; k < slots.size(); ++k) {
+    take_element(slots[k], counts[k], light[k], round);
+    rays.push_back(counts[k].rays);
+  }
+  return rays;
 }
 
-/// Ends the rays of a chunk's elements that the device has left open.
-Status end_open(const SlotChunk& slots, std::span<const DeviceOpenRay> open, Round& round,
-                Progress& progress) {
+/// Ends the rays of a chunk's elements that the device has left open. Returns their hits.
+Result<std::vector<gather::HitTile>> end_open(const SlotChunk& slots,
+                                              std::span<const DeviceOpenRay> open, Round& round,
+                                              Progress& progress) {
   // Elements before the chunk without any rays have no more hits.
   round.more_ends.resize(slots.begin, uint32_t(round.more.size()));
   trace::DeviceRayTracer& tracer = round.scene.tracer;
@@ -237,7 +245,7 @@ Status end_open(const SlotChunk& slots, std::span<const DeviceOpenRay> open, Rou
         *round.scene.light, [&](std::span<const trace::Ray> rays, std::span<trace::Hit> hits) {
           return tracer.closest_hits(rays, hits);
         }});
-  LUXEL_TRY(const std::vector<gather::HitTile> ended,
+  LUXEL_TRY(std::vector<gather::HitTile> ended,
             gather::end_open_rays(round.on_processor, round.scene.in, slots.begin, slots.end,
                                   in_order(open, slots.begin, slots.end, tracer),
                                   device ? &*device : nullptr, round.hits, progress));
@@ -247,11 +255,72 @@ Status end_open(const SlotChunk& slots, std::span<const DeviceOpenRay> open, Rou
     round.more.insert(round.more.end(), tile.entries.begin(), tile.entries.end());
   }
   round.rays.left_open += open.size();
-  if (round.more.size() + open.size() <= kMostOpen) return {};
+  if (round.more.size() <= kMostOpen) return ended;
   return fail(ErrorCode::unsupported,
-              "more than {} rays on the device end where only the processor knows what they bring: "
+              "more than {} rays of a round end where only the processor knows what they bring: "
               "bake with fewer samples or a smaller resolution, or without the device",
               kMostOpen);
+}
+
+/// What is known of a chunk when its rays have ended.
+struct EndedChunk {
+  const SlotChunk& slots;
+  std::span<const uint32_t> rays;          ///< per slot
+  uint64_t followed;                       ///< rays that paths took
+  std::span<const gather::HitTile> ended;  ///< hits of rays that the processor has ended
+};
+
+/// Its hits as the device has them.
+struct ChunkHits {
+  const SlotChunk& slots;
+  std::vector<gather::StoredHit> rows;
+
+  /// Adds those of the k-th slot.
+  void add(uint32_t k, std::vector<gather::StoredHit>& out) const {
+    for (uint32_t place = 0; place < slots.slots[k].places; ++place) {
+      const size_t row = slots.first_row[k / kTogether] + place;
+      const gather::StoredHit hit = rows[row * kTogether + k % kTogether];
+      if (hit.bits >> 15 != 0) out.push_back(hit);  // else it landed nowhere
+    }
+  }
+};
+
+/// Per element of a chunk, its slot, or none.
+std::vector<std::optional<uint32_t>> slots_of_elements(const SlotChunk& slots) {
+  std::vector<std::optional<uint32_t>> out(slots.end - slots.begin);
+  for (uint32_t k = 0; k < slots.slots.size(); ++k) out[slots.slots[k].element - slots.begin] = k;
+  return out;
+}
+
+/// Keeps a chunk's tiles as parts, if that is wanted, as gather keeps those that it traces: the
+/// processor goes on with them. Each gets a share of the rays that paths took.
+Status keep_chunk(const EndedChunk& chunk, const LandedChunk& landed, const Round& round) {
+  if (!round.kept.wants()) return {};
+  ChunkHits on_device{chunk.slots, {}};
+  LUXEL_TRY(on_device.rows,
+            downloaded<gather::StoredHit>(round.commands(), landed.hits,
+                                          chunk.slots.first_row.back() * kTogether));
+  const auto slot_of = slots_of_elements(chunk.slots);
+  for (size_t t = 0; t < chunk.ended.size(); ++t) {
+    const size_t first = t * gather::kTileElements;
+    const gather::HitTile& ended = chunk.ended[t];
+    gather::TracedTile tile;
+    tile.rays = chunk.followed / chunk.ended.size();
+    gather::HitTile& hits = tile.rays_met.hits;
+    for (size_t k = 0; k < ended.end.size(); ++k) {
+      if (const auto slot = slot_of[first + k]) {
+        on_device.add(*slot, hits.entries);
+        tile.rays += chunk.rays[*slot];
+      }
+      const auto more = ended.entries.begin();
+      hits.entries.insert(hits.entries.end(), more + (k == 0 ? 0 : ended.end[k - 1]),
+                          more + ended.end[k]);
+      hits.end.push_back(uint32_t(hits.entries.size()));
+    }
+    const size_t begin = chunk.slots.begin + first;
+    gather::keep_tile(round.kept, begin, begin + ended.end.size(), tile, round.hits);
+  }
+  return {};
 }
 
 /// Everything about the rays of a chunk. Errors: as land_round().
@@ -267,10 +336,12 @@ Result<LandedChunk> finish_chunk(const SlotChunk& slots, Round& round, LandedSec
   LUXEL_TRY(const std::vector<DeviceOpenRay> open, land_chunk(out, round, seconds.device));
   LUXEL_TRY(const double light_s, light_of_escaped(out, round));
   seconds.device += light_s;
-  LUXEL_TRY_STATUS(take_counts(slots.slots, round));
+  LUXEL_TRY(const std::vector<uint32_t> rays, take_counts(slots.slots, round));
   const auto start = Clock::now();
-  LUXEL_TRY_STATUS(end_open(slots, open, round, progress));
+  const uint64_t before = round.hits.rays;
+  LUXEL_TRY(const std::vector<gather::HitTile> ended, end_open(slots, open, round, progress));
   seconds.processor += seconds_since(start);
+  LUXEL_TRY_STATUS(keep_chunk({slots, rays, round.hits.rays - before, ended}, out, round));
   return out;
 }
 
@@ -289,13 +360,15 @@ Status keep_round(Round& round, LandedRound& out) {
   return {};
 }
 
-/// A work group with more rays in each slot takes so much longer.
+/// A work group with more rays in each slot takes so much longer. With fewer it takes less, but for
+/// what each thread does once: pieces grow by as much as run_in_pieces() lets them.
 void fit_pieces(const RoundSlots& slots, LandedRays& rays) {
   uint32_t most = 1;
   for (const SlotChunk& chunk : slots.chunks) most = std::max(most, chunk.slots.front().places);
   if (rays.places_of_piece > 0)
     for (gpu::PieceSize* piece : {&rays.land_piece, &rays.escaped_piece})
-      piece->items = std::max<size_t>(piece->items * rays.places_of_piece / most, 1);
+      piece->items =
+          std::clamp<size_t>(piece->items * rays.places_of_piece / most, 1, 4 * piece->items);
   rays.places_of_piece = most;
 }
 
@@ -336,9 +409,10 @@ Status land_round(const DeviceScene& scene, std::span<const uint16_t> target,
   const size_t n = rays.element_count;
   LUXEL_CHECK(scene.in.elements.size() == n && target.size() == n && hits.size() == n);
   LUXEL_CHECK(hits.rounds.size() == rays.rounds.size() && rays.rounds.size() < 256);
-  LUXEL_CHECK(!params.parts && !params.keep && !params.earlier && !params.layers);
+  LUXEL_CHECK(!params.keep && !params.earlier && !params.layers);
   const gather::SceneOfRays on_processor(scene.in, params);
-  Round round{scene, on_processor, ray_seeds(params.seed), rays, hits};
+  Round round{scene, on_processor, gather::kept_round(hits, target, params), ray_seeds(params.seed),
+              rays,  hits};
   const RoundSlots slots = slots_of_round(target, hits, land.rays_of_chunk);
   progress.begin("trace rays", slots.samples);
   LandedRound out;

@@ -77,9 +77,10 @@ Result<LandedRays> begin_rays(const DeviceScene& scene, const gather::TraceParam
 /// A round of samples, as gather::trace_more() traces it: the same rays up to rounding, and what
 /// they meet by the same rules. `hits` gets what that counts and the light that rays bring without
 /// the map; its rounds stay as they are, as many as those of `rays` were. The processor ends the
-/// rays of one buffer before the device begins the next one. `scene` and `params` are about what
-/// `rays` began with; in params neither parts, keep, earlier nor layers. Errors: 2^31 rays or more
-/// that the processor must end (ErrorCode::unsupported), cancelled, no memory, the device is lost.
+/// rays of one buffer before the device begins the next one. Its tiles are kept as parts then.
+/// `scene` and `params` are about what `rays` began with; in params neither keep, earlier nor
+/// layers. Errors: 2^31 rays or more that the processor must end (ErrorCode::unsupported),
+/// cancelled, no memory, the device is lost.
 Status land_round(const DeviceScene& scene, std::span<const uint16_t> target,
                   const LandParams& land, const gather::TraceParams& params, LandedRays& rays,
                   gather::TracedHits& hits, LandedSeconds& seconds, Progress& progress);

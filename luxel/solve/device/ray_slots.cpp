@@ -1,6 +1,7 @@
 #include "luxel/solve/device/ray_slots.h"
 
 #include <algorithm>
+#include <functional>
 #include <unordered_map>
 
 #include "luxel/base/check.h"

@@ -34,7 +34,7 @@ struct RoundSlots {
   uint64_t samples = 0;           ///< of all slots
 };
 
-/// Of elements that lack samples, those up to `target`. `places_of_chunk`: about so many in a
+/// Samples up to `target`, of elements that lack some. `places_of_chunk`: about so many in a
 /// chunk, or those of gather::kTileElements elements.
 RoundSlots slots_of_round(std::span<const uint16_t> target, const gather::TracedHits& hits,
                           uint64_t places_of_chunk);

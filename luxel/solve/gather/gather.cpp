@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "luxel/base/clock.h"
+#include "luxel/base/forget_at_end.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/solve/gather/bounce/ambient.h"
 #include "luxel/solve/gather/bounce/bounce_layers.h"
@@ -137,7 +138,7 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
                                       in.observer.on_bounce, progress));
   out.hit_bytes_in_file = light.hits.bytes_in_file();
   light.hits.rounds.clear();
-  if (light.hits.device) std::exchange(light.hits.device, nullptr)->forget();
+  light.hits.device = nullptr;
   LUXEL_TRY_STATUS(judge(in, light, progress));
   drop_light(light.hits);
   show(in.observer, light, true);
@@ -173,18 +174,6 @@ void take_result(Progressive&& light, Gather& out) {
   out.sweeps = light.bounced.sweeps;
 }
 
-/// Has the device forget the scene in the end, however that comes.
-struct DeviceUse {
-  RayDevice* device;
-
-  explicit DeviceUse(RayDevice* used) : device(used) {}
-  DeviceUse(const DeviceUse&) = delete;
-  DeviceUse& operator=(const DeviceUse&) = delete;
-  ~DeviceUse() {
-    if (device) device->forget();
-  }
-};
-
 }  // namespace
 
 Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* layers,
@@ -199,7 +188,7 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
   if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
-  const DeviceUse use{scene.elements.size() > 0 ? stores.device : nullptr};
+  const ForgetAtEnd use{scene.elements.size() > 0 ? stores.device : nullptr};
   if (use.device) {
     LUXEL_TRY_STATUS(use.device->begin(trace_scene(scene, &sides)));
     LUXEL_TRY(lit.light_device, use.device->light_device(trace_scene(scene, &sides)));

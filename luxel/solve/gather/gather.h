@@ -55,8 +55,8 @@ struct GatherStores {
   std::filesystem::path scratch_folder = ".";  ///< where those files are
   PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
   PartStore* keep = nullptr;   ///< where rays are kept for later bakes of the scene; null: nowhere
-  /// Traces and keeps the first round of rays; null: the processor. Not with keep, earlier or light
-  /// that is told apart.
+  /// Lights places, traces rays and has their hits; null: the processor. Not with keep, earlier or
+  /// light that is told apart.
   RayDevice* device = nullptr;
   Earlier* earlier = nullptr;  ///< is used up; its rounds come first; null: nothing is known
 };

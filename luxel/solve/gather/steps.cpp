@@ -61,11 +61,10 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
 
 namespace {
 
-/// A round on the device. Its parts are not kept: it takes less time to trace than to read them.
-Status trace_on_device(const Request& in, std::span<const uint16_t> target, TraceParams trace,
-                       TracedHits& hits, Progress& progress) {
+/// A round on the device.
+Status trace_on_device(const Request& in, std::span<const uint16_t> target,
+                       const TraceParams& trace, TracedHits& hits, Progress& progress) {
   LUXEL_CHECK(!trace.keep && !trace.earlier && !trace.layers);
-  trace.parts = nullptr;
   LUXEL_TRY_STATUS(
       in.stores.device->trace(trace_scene(in.scene, &in.sides), target, trace, hits, progress));
   LUXEL_TRY(HitStore none,

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "luxel/base/check.h"
+#include "luxel/base/forget_at_end.h"
 #include "luxel/solve/hemicube/exchange.h"
 #include "luxel/solve/hemicube/look_device.h"
 #include "luxel/solve/hemicube/refine.h"
@@ -136,18 +137,6 @@ Status refine_roughly(const scene::Scene& scene, const trace::RayTracer& tracer,
   return {};
 }
 
-/// Has the device forget the scene in the end, however that comes.
-struct DeviceUse {
-  LookDevice* device;
-
-  explicit DeviceUse(LookDevice* used) : device(used) {}
-  DeviceUse(const DeviceUse&) = delete;
-  DeviceUse& operator=(const DeviceUse&) = delete;
-  ~DeviceUse() {
-    if (device) device->forget();
-  }
-};
-
 }  // namespace
 
 uint64_t bytes_of_hemicube(int resolution, int threads) {
@@ -162,7 +151,7 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
   LUXEL_CHECK(params.resolution >= 2 && params.resolution <= kMaxResolution &&
               params.resolution % 2 == 0);
   LUXEL_TRY(FirstMesh first, first_mesh(scene, params, progress));
-  const DeviceUse use{params.device};
+  const ForgetAtEnd use{params.device};
   if (params.device) LUXEL_TRY_STATUS(params.device->begin(scene));
   const Emission emission = choose_emission(lights);
   Solution s;

@@ -172,15 +172,6 @@ void add_triangles(const scene::Mesh& mesh, const Mat34& world_from_object, uint
   }
 }
 
-std::vector<DeviceTriangle> device_triangles(const scene::Scene& scene) {
-  const std::vector<uint32_t> first = scene::first_triangles(scene);
-  std::vector<DeviceTriangle> out;
-  for (size_t i = 0; i < scene.instances.size(); ++i)
-    add_triangles(scene.meshes[scene.instances[i].mesh], scene.instances[i].world_from_object,
-                  first[i], out);
-  return out;
-}
-
 BinaryHierarchy sort_into_hierarchy(std::vector<DeviceTriangle> triangles, uint32_t most_in_leaf) {
   LUXEL_CHECK(triangles.size() < ChildRef::kFirstMask);
   LUXEL_CHECK(most_in_leaf >= 1 && most_in_leaf <= ChildRef::kMaxCount);

@@ -27,20 +27,19 @@ static_assert(sizeof(DeviceTriangle) == 48);
 /// rays meet the first, which stands for both. They are numbered from `first` on.
 void add_triangles(const scene::Mesh& mesh, const Mat34& world_from_object, uint32_t first,
                    std::vector<DeviceTriangle>& out);
-/// Those of all instances.
-std::vector<DeviceTriangle> device_triangles(const scene::Scene& scene);
 
 /// What a node's child is: another node, or a few triangles that follow each other.
 struct ChildRef {
   static constexpr uint32_t kLeaf = 1u << 31;
-  static constexpr uint32_t kCountShift = 28, kMaxCount = 6;
+  /// Three bits for a count. 7 stands for an instance on the stacks of devices (binary.glsl).
+  static constexpr uint32_t kCountShift = 28, kCountMask = 7, kMaxCount = 6;
   static constexpr uint32_t kFirstMask = (1u << kCountShift) - 1;
 
   static constexpr uint32_t leaf(uint32_t first, uint32_t count) {
     return kLeaf | count << kCountShift | first;
   }
   static constexpr bool is_leaf(uint32_t ref) { return (ref & kLeaf) != 0; }
-  static constexpr uint32_t count(uint32_t ref) { return ref >> kCountShift & 7u; }
+  static constexpr uint32_t count(uint32_t ref) { return ref >> kCountShift & kCountMask; }
   static constexpr uint32_t first(uint32_t ref) { return ref & kFirstMask; }
 };
 

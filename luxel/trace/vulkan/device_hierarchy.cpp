@@ -1,18 +1,16 @@
 #include "luxel/trace/vulkan/device_hierarchy.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
-#include "luxel/base/check.h"
 #include "luxel/trace/shared_meshes.h"
 
 namespace luxel::trace {
 namespace {
 
-/// Drawn triangles have numbers below it: the highest bit of a hit's number says which side was
-/// met, and that of twice the number would be lost.
-constexpr uint64_t kMostDrawn = (uint64_t(1) << 31) - 1;
+/// Drawn triangles have numbers below it: shaders keep both sides of each in a table, whose numbers
+/// are below 2^31.
+constexpr uint64_t kMostDrawn = uint64_t(1) << 30;
 
 /// A shared mesh: its triangles in its own space, numbered from 0 on.
 struct SharedMesh {
@@ -66,18 +64,12 @@ Stored stored_triangles(const scene::Scene& scene, size_t max_flat_triangles) {
 /// Surfaces that let light through, of all that is stored. Triangles of shared meshes, which have
 /// the numbers of their first instance so far, are numbered from 0 on afterwards.
 SeeThrough take_see_through(const scene::Scene& scene, Stored& stored) {
-  std::vector<DeviceTriangle> all = stored.in_world;
-  for (const SharedMesh& mesh : stored.shared)
-    all.insert(all.end(), mesh.triangles.begin(), mesh.triangles.end());
-  SeeThrough out = find_see_through(scene, all);
-  auto next = all.begin();
-  const auto take = [&](std::vector<DeviceTriangle>& triangles) {
-    for (DeviceTriangle& t : triangles) t.see_through = (next++)->see_through;
-  };
-  take(stored.in_world);
+  SeeThrough out;
+  SeeThroughFinder finder(scene, out);
+  finder.find(stored.in_world);
   const std::vector<uint32_t> first = scene::first_triangles(scene);
   for (SharedMesh& mesh : stored.shared) {
-    take(mesh.triangles);
+    finder.find(mesh.triangles);
     for (DeviceTriangle& t : mesh.triangles) t.number -= first[mesh.instances.front()];
   }
   return out;

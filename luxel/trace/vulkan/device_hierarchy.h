@@ -2,6 +2,8 @@
 // several instances share.
 #pragma once
 
+#include <array>
+
 #include "luxel/base/result.h"
 #include "luxel/trace/vulkan/see_through.h"
 #include "luxel/trace/vulkan/wide_hierarchy.h"
@@ -39,7 +41,7 @@ struct DeviceHierarchy {
 };
 
 /// Meshes are shared as trace::RayTracer shares them. Errors: 2^28 - 1 triangles or more are to be
-/// stored, 2^31 - 1 or more are drawn (ErrorCode::unsupported).
+/// stored, 2^30 or more are drawn (ErrorCode::unsupported).
 Result<DeviceHierarchy> device_hierarchy(const scene::Scene& scene, HierarchyKind kind,
                                          size_t max_flat_triangles);
 

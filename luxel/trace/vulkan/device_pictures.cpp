@@ -23,6 +23,12 @@ DevicePicture DevicePictures::picture(const scene::TextureRef& ref) {
           uint32_t(ref.filter == scene::Filter::nearest)};
 }
 
+PlacedPicture DevicePictures::placed(const scene::Mesh& mesh, uint32_t triangle,
+                                     const scene::TextureRef& ref) {
+  return {picture(ref), !texture_coordinates(mesh, ref).empty(),
+          places_in_picture(mesh, triangle, ref)};
+}
+
 std::array<float, 256> linear_of_bytes() {
   std::array<float, 256> out;
   for (size_t k = 0; k < out.size(); ++k) out[k] = image::linear_from_srgb(float(k) / 255.0f);

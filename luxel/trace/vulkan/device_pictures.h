@@ -17,6 +17,14 @@ struct DevicePicture {
   uint32_t nearest = 0;             ///< 1: not filtered
 };
 
+/// A picture on a triangle.
+struct PlacedPicture {
+  DevicePicture picture;
+  uint32_t is_placed = 0;        ///< whether its mesh has texture coordinates
+  std::array<Vec2, 3> places{};  ///< of the triangle's corners in the picture
+};
+static_assert(sizeof(PlacedPicture) == 52);
+
 /// Puts each texture into a list of texels once. What it is made with must outlive it.
 class DevicePictures {
  public:
@@ -26,6 +34,8 @@ class DevicePictures {
 
   /// Where the texture lies; of no texture: a picture of no size.
   DevicePicture picture(const scene::TextureRef& ref);
+  /// As a triangle of a mesh has it.
+  PlacedPicture placed(const scene::Mesh& mesh, uint32_t triangle, const scene::TextureRef& ref);
 
  private:
   const scene::Scene& scene_;

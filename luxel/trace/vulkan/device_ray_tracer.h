@@ -45,8 +45,8 @@ struct DeviceWorld {
 /// `device` and `scene` are kept by reference and must outlive it. One thread at a time uses it.
 class DeviceRayTracer {
  public:
-  /// Errors: 2^28 - 1 triangles or more to store, or a scene of 10^15 m (ErrorCode::unsupported),
-  /// no memory, the device is lost.
+  /// Errors: those of device_hierarchy(), a scene of 10^15 m (ErrorCode::unsupported), no memory,
+  /// the device is lost.
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
                                        HierarchyKind kind,
                                        size_t max_flat_triangles = kMaxFlatTriangles);

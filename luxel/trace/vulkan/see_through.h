@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "luxel/base/vec.h"
@@ -35,7 +36,21 @@ struct SeeThrough {
   std::vector<uint32_t> texels;  ///< RGBA, red in the lowest byte
 };
 
-/// Notes in each triangle that lets light through where it is found: DeviceTriangle::see_through.
-SeeThrough find_see_through(const scene::Scene& scene, std::vector<DeviceTriangle>& triangles);
+/// Finds surfaces that let light through. What it is made with must outlive it.
+class SeeThroughFinder {
+ public:
+  SeeThroughFinder(const scene::Scene& scene, SeeThrough& out);
+  /// Adds those among `triangles`, which have the numbers of drawn ones, and notes in each where it
+  /// is found: DeviceTriangle::see_through.
+  void find(std::span<DeviceTriangle> triangles);
+
+ private:
+  const scene::Scene& scene_;
+  SeeThrough& out_;
+  DevicePictures pictures_;
+  bool any_;  ///< whether any material lets light through
+  std::vector<uint32_t> first_triangle_;
+  std::vector<uint32_t> material_there_;  ///< per material: its number in out_
+};
 
 }  // namespace luxel::trace

@@ -1,5 +1,7 @@
 #include "luxel/view/relight/relit_on_device.h"
 
+#include <algorithm>
+
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
 #include "luxel/view/shaders/relit_map.comp.h"

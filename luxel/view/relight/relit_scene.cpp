@@ -44,15 +44,16 @@ PatchLight patch_light_of(const gpu::Device& device) {
 
 namespace {
 
-/// What relights the scene, if the device knows the file's codec. Errors: no memory, the device is
-/// lost.
+/// What relights the scene, if the device knows the file's codec and has the memory for it. Errors:
+/// the device is lost.
 Result<std::optional<RelitOnDevice>> relit_on_device(gpu::Commands& commands,
                                                      const OpenedLxr& opened,
                                                      const DeviceScene& scene) {
   auto made = make_relit_on_device(commands, opened.light, scene);
-  if (!made && made.error().code == ErrorCode::unsupported) return std::nullopt;
-  if (!made) return tl::unexpected(made.error());
-  return std::move(*made);
+  if (made) return std::move(*made);
+  const ErrorCode code = made.error().code;
+  if (code == ErrorCode::unsupported || code == ErrorCode::out_of_memory) return std::nullopt;
+  return tl::unexpected(made.error());
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ enum class PatchLight : uint8_t {
 /// On a graphics card all of it; on a processor that plays one, by its own code.
 PatchLight patch_light_of(const gpu::Device& device);
 
-/// With the light of the lamps as they were baked. A file that the device does not know is relit by
-/// maps instead. Errors: no memory on the device.
+/// With the light of the lamps as they were baked. A file that the device does not know, or has no
+/// memory for, is relit by maps instead. Errors: no memory on the device.
 Result<RelitScene> lxr_shown(gpu::Commands& commands, PatchLight patches, OpenedLxr& opened);
 
 /// What the light of a picture took [ms].

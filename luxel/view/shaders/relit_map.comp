@@ -48,7 +48,7 @@ float scale_now() {
   uint largest = map.largest.value;
   if (largest == 0) return 1;
   int exponent = int(largest >> 23) - 126;
-  return uintBitsToFloat(uint(clamp(exponent - 15, -100, 112) + 127) << 23);
+  return uintBitsToFloat(uint(clamp(exponent - 15, -100, 127) + 127) << 23);
 }
 
 void main() {
@@ -64,7 +64,7 @@ void main() {
     if (largest > 0) atomicMax(map.largest.value, floatBitsToUint(largest));  // such bits are in order
   } else {
     float scale = scale_now();
-    vec3 e = map.pixels.at[k] / scale;
+    vec3 e = min(map.pixels.at[k] / scale, vec3(65504));  // the largest half
     map.halves.at[k] = uvec2(packHalf2x16(e.xy), packHalf2x16(vec2(e.z, 0)));
     if (k == 0) map.scale.value = scale;
   }

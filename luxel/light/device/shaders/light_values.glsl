@@ -9,7 +9,7 @@ layout(constant_id = 2) const uint kAllEven = 0;
 vec3 radiance_at(TriangleLight light, vec2 uv) {
   if (kAllEven != 0 || light.texture_number == 0) return light.radiance;
   LightTexture t = setup.textures.at[light.texture_number - 1];
-  return t.emission * colour_at(setup.texels, setup.linear_of_byte, t.picture, t.is_placed != 0, t.places, uv).xyz;
+  return t.emission * colour_at(setup.texels, setup.linear_of_byte, t.picture, uv);
 }
 
 // Where an angle lies between ascending ones, which reach around it: the entry before it, and the

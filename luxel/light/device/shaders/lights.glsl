@@ -15,9 +15,7 @@ struct TriangleLight {
 };
 struct LightTexture {
   vec3 emission;
-  uint is_placed;
-  vec2 places[3];
-  Picture picture;
+  PlacedPicture picture;
 };
 // light::LightNode
 struct LightNode {

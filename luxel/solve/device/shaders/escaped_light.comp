@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push {
   Surroundings around;
   Elements elements;
   AllShares shares;
-  // Of the chunk.
+  // What the chunk has:
   RaySlots slots;
   TileRows rows;
   StoredHits hits;

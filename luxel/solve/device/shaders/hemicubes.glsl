@@ -23,6 +23,7 @@ struct SeenTriangle {
   uint other_side;        // of a sheet: its number; or kNoTriangle
   uint flags;
   vec3 emission;
+  uint picture;  // of the emission: 1 + a number of PlacedPictures; 0: none
 };
 const uint kTwoSided = 1, kEmissive = 2;
 // A triangle of the mesh, or one that was cut in two: hemicube::Node.
@@ -38,6 +39,7 @@ struct View {
 layout(buffer_reference, scalar) readonly buffer Pixels { Pixel at[]; };
 layout(buffer_reference, scalar) readonly buffer Viewpoints { Viewpoint at[]; };
 layout(buffer_reference, scalar) readonly buffer SeenTriangles { SeenTriangle at[]; };
+layout(buffer_reference, scalar) readonly buffer PlacedPictures { PlacedPicture at[]; };
 layout(buffer_reference, scalar) readonly buffer Nodes { Node at[]; };
 layout(buffer_reference, scalar) writeonly buffer Views { View at[]; };
 layout(buffer_reference, scalar) buffer Shares { uint at[]; };
@@ -48,6 +50,9 @@ layout(buffer_reference, scalar) buffer Setup {
   Nodes nodes;
   Pixels pixels;
   Surroundings around;
+  PlacedPictures pictures;
+  Texels texels;
+  Floats linear_of_byte;
   uint pixel_count, element_count;
   uint per_vertex;  // else per triangle
 };
@@ -120,7 +125,11 @@ vec3 see(uint view, Pixel pixel, vec3 direction, Hit hit) {
     add_share(view, node.element[1], one);
     add_share(view, node.element[2], two - one);
   }
-  return (t.flags & kEmissive) != 0 ? t.emission * factor : vec3(0);
+  if ((t.flags & kEmissive) == 0) return vec3(0);
+  vec3 emission = t.emission;
+  if (t.picture != 0)
+    emission *= colour_at(setup.texels, setup.linear_of_byte, setup.pictures.at[t.picture - 1], uv);
+  return emission * factor;
 }
 
 void main() {

@@ -28,7 +28,7 @@ layout(buffer_reference, scalar) buffer Setup {
   Landings landings;
   Words mixed;  // bits per LookupPlace::base: where walls are
   AllShares shares;
-  // Of the chunk.
+  // What the chunk has:
   RaySlots slots;
   TileRows rows;
   AllCounts counts;

@@ -22,10 +22,10 @@ layout(push_constant, scalar) uniform Push {
   Map map;  // gather::RadiosityMap
   AllGathered gathered;
   CountedRounds counted;
-  // Of the round.
+  // What the round has:
   StoredHits more;  // of all elements, one element's after another's
   Ends ends;        // per element, one past the last of `more`
-  // Of the chunk.
+  // What the chunk has:
   RaySlots slots;
   TileRows rows;
   StoredHits hits;

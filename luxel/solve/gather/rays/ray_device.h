@@ -20,7 +20,8 @@ struct TracedHits;
 struct TraceScene;
 
 /// Works direct light out, traces rounds of rays, and keeps where they land. One solution at a time
-/// uses it. It keeps no parts, and shows nobody how a round grows.
+/// uses it. It keeps parts, which the processor finds, but looks for none, and shows nobody how a
+/// round grows.
 class RayDevice {
  public:
   virtual ~RayDevice() = default;
@@ -36,7 +37,7 @@ class RayDevice {
 
   /// trace_more(), but that the hits stay on the device until forget(), and sweep() has what they
   /// bring: the store of the round, which the caller adds, is empty. All rounds of `hits` are the
-  /// device's. Some elements. In params neither parts, keep, earlier nor layers. Errors:
+  /// device's. Some elements. In params neither keep, earlier nor layers. Errors:
   /// ErrorCode::unsupported for too many rays, cancelled, no memory, the device is lost.
   virtual Status trace(const TraceScene& in, std::span<const uint16_t> target,
                        const TraceParams& params, TracedHits& hits, Progress& progress) = 0;

@@ -1,6 +1,7 @@
 #include "luxel/solve/gather/trace/follow_many.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "luxel/base/check.h"

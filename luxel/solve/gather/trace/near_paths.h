@@ -79,8 +79,8 @@ uint64_t follow_near(const NearScene& in, NearBuffers& buffers, const End& end);
 /// come first in buffers.going_on, with throughput 0. `depth`: how many steps there have been.
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers);
 
-// The parts of a step of one path. With each light that it gets is added to NearPath::light, times
-// its throughput over pi.
+// The parts of a step of one path. Between receiver_of() and go_on() the caller adds the light that
+// arrives there, times throughput over pi, to NearPath::light.
 /// Takes on what the surface there reflects. False: nothing, and the path ends.
 bool reflect(const NearScene& in, NearPath& path);
 /// Where a path is lit, and its ray on starts. `depth`: how many steps there have been.

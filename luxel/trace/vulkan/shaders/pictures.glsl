@@ -58,3 +58,13 @@ vec4 colour_at(Texels texels, Floats linear_of_byte, Picture p, bool has_places,
   return mix(mix(linear_texel(texels, linear_of_byte, p, c.x, c.y), linear_texel(texels, linear_of_byte, p, c.x + 1, c.y), f.x),
              mix(linear_texel(texels, linear_of_byte, p, c.x, c.y + 1), linear_texel(texels, linear_of_byte, p, c.x + 1, c.y + 1), f.x), f.y);
 }
+
+// A picture on a triangle.
+struct PlacedPicture {
+  Picture picture;
+  uint is_placed;
+  vec2 places[3];
+};
+vec3 colour_at(Texels texels, Floats linear_of_byte, PlacedPicture p, vec2 uv) {
+  return colour_at(texels, linear_of_byte, p.picture, p.is_placed != 0, p.places, uv).xyz;
+}

@@ -50,6 +50,11 @@ Result<Table> measure_gpu_direct(const std::filesystem::path& shared, int thread
 Result<Table> measure_gpu_hemicube(const std::filesystem::path& shared, int threads);
 /// Updates of moved lamps on a graphics device against those on the processor.
 Result<Table> measure_gpu_relight(const std::filesystem::path& shared, int threads);
+/// The light of whole bakes with a graphics device against that of the processor: [Moreno05, table
+/// 5.1], five scenes to an error, and maps that grow.
+Result<Table> measure_gpu_bake(const std::filesystem::path& shared, int threads);
+/// Rays per second of a graphics device as scenes grow.
+Result<Table> measure_gpu_growth(const std::filesystem::path& shared, int threads);
 /// Those of rays that texels share the directions of, against gather's own: an experiment.
 Result<Table> measure_bundles(const std::filesystem::path& shared, int threads);
 /// The Cornell box of [Moreno05, table 5.1] at four resolutions.
@@ -117,6 +122,8 @@ inline constexpr std::array kBenches{Bench{"rays", measure_rays},
                                      Bench{"gpu-gather", measure_gpu_gather},
                                      Bench{"gpu-direct", measure_gpu_direct},
                                      Bench{"gpu-hemicube", measure_gpu_hemicube},
-                                     Bench{"gpu-relight", measure_gpu_relight}};
+                                     Bench{"gpu-relight", measure_gpu_relight},
+                                     Bench{"gpu-bake", measure_gpu_bake},
+                                     Bench{"gpu-growth", measure_gpu_growth}};
 
 }  // namespace luxel::bench

@@ -12,9 +12,9 @@ namespace {
 /// Push in sweep.comp.
 struct SweepPush {
   VkDeviceAddress map, gathered, counted_rounds;
-  VkDeviceAddress more, ends;
-  VkDeviceAddress slots, first_row, hits;
-  uint32_t slot_count, map_stride, round;
+  VkDeviceAddress more = 0, ends = 0;
+  VkDeviceAddress slots = 0, first_row = 0, hits = 0;
+  uint32_t slot_count = 0, map_stride, round = 0;
   uint32_t first_group = 0;
 };
 static_assert(sizeof(SweepPush) == 80);

@@ -229,19 +229,21 @@ TEST_F(BakesOnDevice, GoOnWhereTheDeviceWasLost) {
   const gather::Gather expected = solve(*room, params);
   const testing_support::ScratchFolder folder;
   Progress progress;
-  PartStore parts({.file = folder.path / "parts", .header = "test", .interval_s = 1e-9}, progress);
+  PartStoreParams kept;
+  kept.file = folder.path / "parts", kept.header = "test", kept.interval_s = 1e-9;
+  PartStore parts(kept, progress);
   LostLater lost(*device_);
   const auto failed = gather::gather(gather::scene_of(*room), nullptr, params,
                                      {.parts = &parts, .device = &lost}, {}, progress);
   ASSERT_FALSE(failed);
   EXPECT_EQ(failed.error().message, "the cable is out");
-  const uint64_t kept = parts.parts_kept();
-  EXPECT_GT(kept, 2 * (room->elements.size() / gather::kTileElements));
+  const uint64_t made = parts.parts_kept();
+  EXPECT_GT(made, 2 * (room->elements.size() / gather::kTileElements));
   const auto found =
       gather::gather(gather::scene_of(*room), nullptr, params, {.parts = &parts}, {}, progress);
   ASSERT_TRUE(found) << found.error().message;
-  EXPECT_EQ(parts.parts_found(), kept) << "all of them";
-  EXPECT_EQ(parts.parts_kept(), kept) << "and none had to be made";
+  EXPECT_EQ(parts.parts_found(), made) << "all of them";
+  EXPECT_EQ(parts.parts_kept(), made) << "and none had to be made";
   EXPECT_EQ(found->direct, expected.direct);
   const Differences d = differences(luminances(found->irradiance), luminances(expected.irradiance));
   EXPECT_LT(d.rms, 1e-4) << "sums in another order";

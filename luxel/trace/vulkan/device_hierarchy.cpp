@@ -1,7 +1,7 @@
 #include "luxel/trace/vulkan/device_hierarchy.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 
 #include "luxel/trace/shared_meshes.h"
 
@@ -156,8 +156,7 @@ void place_instances(const scene::Scene& scene, const Stored& stored, size_t in_
     for (const uint32_t i : mesh.instances) {
       const DeviceInstance place{inverse_of(scene.instances[i].world_from_object), mesh.root,
                                  first[i], i};
-      DeviceTriangle both[2];
-      std::memcpy(both, &place, sizeof place);
+      const auto both = std::bit_cast<std::array<DeviceTriangle, 2>>(place);
       out.triangles.insert(out.triangles.end(), {both[0], both[1]});
     }
 }

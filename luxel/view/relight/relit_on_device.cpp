@@ -17,7 +17,8 @@ enum class MapStep : uint8_t { places, gutter, largest, halves };
 
 /// Map of the shader.
 struct DeviceMap {
-  VkDeviceAddress light, place, pixel, gutter, first, from, pixels, largest, halves, scale;
+  VkDeviceAddress light, place = 0, pixel = 0, gutter = 0, first = 0, from = 0, pixels = 0;
+  VkDeviceAddress largest, halves, scale;
   uint32_t pixel_count, unused = 0;
 };
 static_assert(sizeof(DeviceMap) == 88);

@@ -13,12 +13,12 @@ namespace luxel::view {
 /// What relights a scene on a device, and makes the lightmap of its places there.
 struct RelitOnDevice {
   device::DeviceRelighter relighter;
-  std::array<gpu::Pipeline, 4> steps;  ///< of shaders/relit_map.comp
-  std::deque<gpu::Buffer> held;        ///< whose addresses are in `map`
-  gpu::Buffer map;                     ///< Map of the shader
-  gpu::Buffer largest, halves;
+  std::array<gpu::Pipeline, 4> steps{};  ///< of shaders/relit_map.comp
+  std::deque<gpu::Buffer> held{};        ///< whose addresses are in `map`
+  gpu::Buffer map{};                     ///< Map of the shader
+  gpu::Buffer largest{}, halves{};
   uint32_t place_count = 0, pixel_count = 0;
-  std::vector<uint32_t> ring_end;  ///< MapPlaces::ring_end
+  std::vector<uint32_t> ring_end{};  ///< MapPlaces::ring_end
 };
 
 /// The scene's lightmap is that of `light`, on one page; the data of `light` is kept by reference.

@@ -1,9 +1,11 @@
 // Work that is recorded and given to a device.
 #pragma once
 
+#include <cstring>
 #include <deque>
 #include <functional>
 #include <ranges>
+#include <vector>
 
 #include "luxel/gpu/buffer.h"
 
@@ -65,6 +67,20 @@ Status copy_bytes(Commands& commands, const Buffer& from, const Buffer& to, VkDe
 /// the processor writes. Not empty. Errors: no memory, the device is lost.
 Result<Buffer> uploaded(Commands& commands, std::span<const std::byte> bytes,
                         std::string_view what);
+
+/// The first `count` values of a buffer of the device, of which there may be none. Errors: no
+/// memory, the device is lost.
+template <class T>
+Result<std::vector<T>> downloaded(Commands& commands, const Buffer& from, size_t count,
+                                  std::string_view what) {
+  std::vector<T> out(count);
+  if (count == 0) return out;
+  LUXEL_TRY(const Buffer here,
+            make_buffer(commands.device(), count * sizeof(T), Access::to_host, what));
+  LUXEL_TRY_STATUS(copy_bytes(commands, from, here, here.size));
+  std::memcpy(out.data(), here.mapped, here.size);
+  return out;
+}
 
 /// uploaded() for values of which there may be none: the buffer holds a Value{} then, because a
 /// buffer is never empty. Errors: no memory, the device is lost.

@@ -13,7 +13,7 @@ namespace luxel::light {
 struct LightAt;
 struct Receiver;
 
-/// Which light receivers get, and how well it is known.
+/// The light that receivers get, and how well it is known.
 struct LightAsked {
   int samples = 64;             ///< DirectParams::samples
   bool punctual_alone = false;  ///< that of punctual lights, with so many rays for each sun's disc

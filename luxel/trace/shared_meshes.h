@@ -1,4 +1,4 @@
-// Which meshes of a scene are stored once for all their instances.
+// Meshes of a scene that are stored once for all their instances.
 #pragma once
 
 #include <cstddef>

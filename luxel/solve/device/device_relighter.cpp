@@ -304,19 +304,13 @@ Status DeviceRelighter::update(const matrix::RelightLights& lights) {
 
 Status DeviceRelighter::read(matrix::Relit& out) {
   Impl& my = *impl_;
-  const auto read = [&](const gpu::Buffer& from, size_t count, std::vector<Rgb>& to) -> Status {
-    to.resize(count);
-    if (count == 0) return {};
-    LUXEL_TRY(const gpu::Buffer here,
-              gpu::make_buffer(my.device, count * sizeof(Rgb), gpu::Access::to_host,
-                               "the buffer of relit light"));
-    LUXEL_TRY_STATUS(gpu::copy_bytes(*my.commands, from, here, here.size));
-    std::memcpy(to.data(), here.mapped, here.size);
-    return {};
+  const auto read = [&](const gpu::Buffer& from, size_t count) {
+    return gpu::downloaded<Rgb>(*my.commands, from, count, "the buffer of relit light");
   };
-  LUXEL_TRY_STATUS(read(my.buffers.direct, my.data.size(), out.direct));
-  LUXEL_TRY_STATUS(read(my.buffers.indirect, my.data.size(), out.indirect));
-  return read(my.buffers.at_place, my.buffers.places, out.indirect_at_points);
+  LUXEL_TRY(out.direct, read(my.buffers.direct, my.data.size()));
+  LUXEL_TRY(out.indirect, read(my.buffers.indirect, my.data.size()));
+  LUXEL_TRY(out.indirect_at_points, read(my.buffers.at_place, my.buffers.places));
+  return {};
 }
 
 VkDeviceAddress DeviceRelighter::indirect_at_points() const {

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cstring>
-
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/gpu/device_test_support.h"
@@ -25,16 +23,6 @@ transport::Elements elements_on_sphere(size_t count) {
   }
   out.normal[0] = out.geometric_normal[0] = {0, 0, 1};
   out.normal[1] = out.geometric_normal[1] = {0, 0, -1};
-  return out;
-}
-
-std::vector<trace::DeviceHit> read_back(const gpu::Device& device, gpu::Commands& commands,
-                                        const gpu::Buffer& from) {
-  const auto to = gpu::make_buffer(device, from.size, gpu::Access::to_host, "hits");
-  EXPECT_TRUE(to);
-  EXPECT_TRUE(gpu::copy_bytes(commands, from, *to, from.size));
-  std::vector<trace::DeviceHit> out(from.size / sizeof(trace::DeviceHit));
-  std::memcpy(out.data(), to->mapped, from.size);
   return out;
 }
 
@@ -70,13 +58,15 @@ TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
       auto hits = prepare_first_hits(*tracer, *commands_, elements, diagonal_m, {samples, seed});
       ASSERT_TRUE(hits) << hits.error().message;
       ASSERT_TRUE(trace_first_hits(*tracer, *commands_, *hits));
-      const std::vector<trace::DeviceHit> values = read_back(*device_, *commands_, hits->hits);
+      const auto values = gpu::downloaded<trace::DeviceHit>(
+          *commands_, hits->hits, hits->hits.size / sizeof(trace::DeviceHit), "hits");
+      ASSERT_TRUE(values) << values.error().message;
       for (size_t i = 0; i < elements.size(); ++i) {
         std::vector<trace::Ray> rays(samples);
         gather::element_rays(
             trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
             elements.normal[i], elements.geometric_normal[i], gather::seed_of_rays(seed, i), rays);
-        const std::vector<Vec3> places = met_places(scene, *hits, values, i);
+        const std::vector<Vec3> places = met_places(scene, *hits, *values, i);
         for (size_t k = 0; k < samples; ++k) {
           const trace::Hit expected = embree->closest_hit(rays[k]);
           ASSERT_LT(length(places[k] - scene::world_position(scene, expected.point())), 1e-3f)

@@ -1,12 +1,12 @@
 #include "luxel/solve/device/landed_rays.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
 #include "luxel/solve/device/device_elements.h"
+#include "luxel/solve/device/kept_chunk.h"
 #include "luxel/solve/device/landings.h"
 #include "luxel/solve/device/open_list.h"
 #include "luxel/solve/device/ray_slots.h"
@@ -84,18 +84,6 @@ struct Round {
   gpu::Commands& commands() const { return scene.commands; }
   const gpu::Device& device() const { return scene.tracer.device(); }
 };
-
-/// The first `count` values of a buffer.
-template <class T>
-Result<std::vector<T>> downloaded(gpu::Commands& commands, const gpu::Buffer& from, size_t count) {
-  LUXEL_TRY(const gpu::Buffer to,
-            gpu::make_buffer(commands.device(), count * sizeof(T), gpu::Access::to_host,
-                             "the buffer of what comes back"));
-  LUXEL_TRY_STATUS(gpu::copy_bytes(commands, from, to, to.size));
-  std::vector<T> out(count);
-  std::memcpy(out.data(), to.mapped, to.size);
-  return out;
-}
 
 /// Whether light comes from around at all.
 bool shines(const scene::Scene& scene, const light::Surroundings& around) {
@@ -219,10 +207,13 @@ void take_element(const RaySlot& slot, const EndCounts& counts, const gather::Es
 
 /// take_element() of a chunk's slots. Returns how many rays each has.
 Result<std::vector<uint32_t>> take_counts(std::span<const RaySlot> slots, Round& round) {
-  LUXEL_TRY(const auto counts, downloaded<EndCounts>(round.commands(), round.counts, slots.size()));
+  constexpr std::string_view kBack = "the buffer of what comes back";
+  LUXEL_TRY(const auto counts,
+            gpu::downloaded<EndCounts>(round.commands(), round.counts, slots.size(), kBack));
   std::vector<gather::EscapedLight> light(slots.size());
   if (!round.rays.is_dark_around) {
-    LUXEL_TRY(light, downloaded<gather::EscapedLight>(round.commands(), round.light, slots.size()));
+    LUXEL_TRY(light, gpu::downloaded<gather::EscapedLight>(round.commands(), round.light,
+                                                           slots.size(), kBack));
   }
   std::vector<uint32_t> rays;
   for (size_t k = 0; k < slots.size(); ++k) {
@@ -262,67 +253,6 @@ Result<std::vector<gather::HitTile>> end_open(const SlotChunk& slots,
               kMostOpen);
 }
 
-/// What is known of a chunk when its rays have ended.
-struct EndedChunk {
-  const SlotChunk& slots;
-  std::span<const uint32_t> rays;          ///< per slot
-  uint64_t followed;                       ///< rays that paths took
-  std::span<const gather::HitTile> ended;  ///< hits of rays that the processor has ended
-};
-
-/// Its hits as the device has them.
-struct ChunkHits {
-  const SlotChunk& slots;
-  std::vector<gather::StoredHit> rows;
-
-  /// Adds those of the k-th slot.
-  void add(uint32_t k, std::vector<gather::StoredHit>& out) const {
-    for (uint32_t place = 0; place < slots.slots[k].places; ++place) {
-      const size_t row = slots.first_row[k / kTogether] + place;
-      const gather::StoredHit hit = rows[row * kTogether + k % kTogether];
-      if (hit.bits >> 15 != 0) out.push_back(hit);  // else it landed nowhere
-    }
-  }
-};
-
-/// Per element of a chunk, its slot, or none.
-std::vector<std::optional<uint32_t>> slots_of_elements(const SlotChunk& slots) {
-  std::vector<std::optional<uint32_t>> out(slots.end - slots.begin);
-  for (uint32_t k = 0; k < slots.slots.size(); ++k) out[slots.slots[k].element - slots.begin] = k;
-  return out;
-}
-
-/// Keeps a chunk's tiles as parts, if that is wanted, as gather keeps those that it traces: the
-/// processor goes on with them. Each gets a share of the rays that paths took.
-Status keep_chunk(const EndedChunk& chunk, const LandedChunk& landed, const Round& round) {
-  if (!round.kept.wants()) return {};
-  ChunkHits on_device{chunk.slots, {}};
-  LUXEL_TRY(on_device.rows,
-            downloaded<gather::StoredHit>(round.commands(), landed.hits,
-                                          chunk.slots.first_row.back() * kTogether));
-  const auto slot_of = slots_of_elements(chunk.slots);
-  for (size_t t = 0; t < chunk.ended.size(); ++t) {
-    const size_t first = t * gather::kTileElements;
-    const gather::HitTile& ended = chunk.ended[t];
-    gather::TracedTile tile;
-    tile.rays = chunk.followed / chunk.ended.size();
-    gather::HitTile& hits = tile.rays_met.hits;
-    for (size_t k = 0; k < ended.end.size(); ++k) {
-      if (const auto slot = slot_of[first + k]) {
-        on_device.add(*slot, hits.entries);
-        tile.rays += chunk.rays[*slot];
-      }
-      const auto more = ended.entries.begin();
-      hits.entries.insert(hits.entries.end(), more + (k == 0 ? 0 : ended.end[k - 1]),
-                          more + ended.end[k]);
-      hits.end.push_back(uint32_t(hits.entries.size()));
-    }
-    const size_t begin = chunk.slots.begin + first;
-    gather::keep_tile(round.kept, begin, begin + ended.end.size(), tile, round.hits);
-  }
-  return {};
-}
-
 /// Everything about the rays of a chunk. Errors: as land_round().
 Result<LandedChunk> finish_chunk(const SlotChunk& slots, Round& round, LandedSeconds& seconds,
                                  Progress& progress) {
@@ -341,7 +271,8 @@ Result<LandedChunk> finish_chunk(const SlotChunk& slots, Round& round, LandedSec
   const uint64_t before = round.hits.rays;
   LUXEL_TRY(const std::vector<gather::HitTile> ended, end_open(slots, open, round, progress));
   seconds.processor += seconds_since(start);
-  LUXEL_TRY_STATUS(keep_chunk({slots, rays, round.hits.rays - before, ended}, out, round));
+  LUXEL_TRY_STATUS(keep_chunk({slots, rays, round.hits.rays - before, ended}, out.hits,
+                              {round.kept, commands, round.hits}));
   return out;
 }
 

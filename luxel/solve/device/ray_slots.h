@@ -1,4 +1,4 @@
-// Which rays a round adds to which elements, in the order in which a device takes them.
+// The rays that a round adds to elements, in the order in which a device takes them.
 #pragma once
 
 #include <cstdint>

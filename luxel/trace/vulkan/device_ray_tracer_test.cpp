@@ -65,6 +65,28 @@ scene::Scene quad_scene(Mat34 world_from_object) {
   return scene;
 }
 
+/// Rays that meet something, and those that meet another triangle or its other side.
+struct Counts {
+  size_t met = 0, other = 0;
+};
+/// Calls same(hit, expected) where both have met the same side of a triangle. What is met is
+/// blocked.
+template <class Same>
+Counts compare(std::span<const Hit> hits, std::span<const Hit> expected,
+               std::span<const uint8_t> blocked, const Same& same) {
+  Counts out;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    out.met += expected[i].found();
+    EXPECT_EQ(hits[i].found(), blocked[i] != 0);
+    if (hits[i].instance != expected[i].instance || hits[i].triangle != expected[i].triangle ||
+        hits[i].back_face != expected[i].back_face)
+      ++out.other;
+    else if (expected[i].found())
+      same(hits[i], expected[i]);
+  }
+  return out;
+}
+
 // Rays that graze an edge may meet either side of it, and those that begin on a surface may meet it
 // or not: one in a thousand at most. All others meet the same triangle at the same place, up to
 // some roundings.
@@ -79,21 +101,12 @@ TEST_P(DeviceRays, MeetWhatTheProcessorsMeet) {
     std::vector<uint8_t> blocked(rays.size());
     ASSERT_TRUE(device.occluded(rays, blocked));
     const std::vector<Hit> hits = hits_of(device, rays);
-    size_t met = 0, other = 0;
-    for (size_t i = 0; i < rays.size(); ++i) {
-      met += expected[i].found();
-      EXPECT_EQ(hits[i].found(), blocked[i] != 0);
-      if (hits[i].instance != expected[i].instance || hits[i].triangle != expected[i].triangle ||
-          hits[i].back_face != expected[i].back_face) {
-        ++other;
-        continue;
-      }
-      if (!expected[i].found()) continue;
-      const Vec3 p = scene::world_position(scene, hits[i].point()),
-                 q = scene::world_position(scene, expected[i].point());
+    const auto [met, other] = compare(hits, expected, blocked, [&](const Hit& a, const Hit& b) {
+      const Vec3 p = scene::world_position(scene, a.point()),
+                 q = scene::world_position(scene, b.point());
       EXPECT_LT(length(p - q), 1e-5f * (1 + scene::world_bounds(scene).diagonal())) << file;
-      EXPECT_NEAR(hits[i].t, expected[i].t, 1e-5f * (1 + expected[i].t)) << file;
-    }
+      EXPECT_NEAR(a.t, b.t, 1e-5f * (1 + b.t)) << file;
+    });
     EXPECT_GT(met, rays.size() / 2) << file;
     EXPECT_LE(other, rays.size() / 1000) << file;
   }
@@ -191,21 +204,12 @@ TEST_P(DeviceRays, MeetInstancesOfSharedMeshes) {
   std::vector<uint8_t> blocked(rays.size());
   ASSERT_TRUE(shared->occluded(rays, blocked));
   const float diagonal_m = scene::world_bounds(scene).diagonal();
-  size_t met = 0, other = 0;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    met += expected[i].found();
-    EXPECT_EQ(hits[i].found(), blocked[i] != 0);
-    if (hits[i].instance != expected[i].instance || hits[i].triangle != expected[i].triangle ||
-        hits[i].back_face != expected[i].back_face) {
-      ++other;
-      continue;
-    }
-    if (!expected[i].found()) continue;
-    const Vec3 p = scene::world_position(scene, hits[i].point()),
-               q = scene::world_position(scene, expected[i].point());
+  const auto [met, other] = compare(hits, expected, blocked, [&](const Hit& a, const Hit& b) {
+    const Vec3 p = scene::world_position(scene, a.point()),
+               q = scene::world_position(scene, b.point());
     EXPECT_LT(length(p - q), 1e-4f * diagonal_m);
-    EXPECT_NEAR(hits[i].t, expected[i].t, 1e-4f * diagonal_m);
-  }
+    EXPECT_NEAR(a.t, b.t, 1e-4f * diagonal_m);
+  });
   EXPECT_GT(met, rays.size() / 3);
   EXPECT_LE(other, rays.size() / 1000);
 }

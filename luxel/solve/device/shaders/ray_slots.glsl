@@ -1,4 +1,4 @@
-// Which rays a round adds to which elements: ../ray_slots.h.
+// The rays that a round adds to elements: ../ray_slots.h.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 struct RaySlot {

@@ -7,14 +7,12 @@
 #include "luxel/image/color.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
+#include "tests/view_command.h"
 
 namespace luxel::testing_support {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr const char* kWindow =
-    "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 120 xvfb-run -a";
 
 class ViewFiles : public ::testing::Test {
  protected:
@@ -23,7 +21,6 @@ class ViewFiles : public ::testing::Test {
     if (r.err.find("device") != std::string::npos || r.err.find("Vulkan") != std::string::npos)
       GTEST_SKIP() << "no graphics device";
   }
-  static bool has_windows() { return shell("command -v xvfb-run").code == 0; }
   CommandResult run(const std::string& arguments, const std::string& before = "") const {
     return shell("cd " + s_.path.string() + " && " + before + " " LUXEL_VIEW_BINARY " " +
                  arguments);
@@ -61,10 +58,9 @@ const std::string kIrradiance = R"({"at": 0, "show": "irradiance"}, {"at": 0, "r
 constexpr const char* kFewTexels = "--resolution 64 --samples 16";
 
 TEST_F(ViewFiles, AWindowWithoutASubjectWaitsForOne) {
-  if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string state = "XDG_STATE_HOME=" + (s_.path / "state").string();
-  const CommandResult r =
-      run("", state + " VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation xvfb-run -a timeout 3");
+  const CommandResult r = run("", state + " " + kInWindow + " timeout 3");
   EXPECT_EQ(r.code, 124) << "it is still open";
   EXPECT_EQ(r.out + r.err, "");
 }
@@ -124,21 +120,21 @@ TEST_F(ViewFiles, TurnAround) {
 
 // What cannot be opened changes nothing.
 TEST_F(ViewFiles, OpenInAWindow) {
-  if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string a = baked("a", "cornell-box.glb", kFewTexels);
   const std::string b = baked("b", "furnace-box.glb", kFewTexels);
   const auto opening = [&](const std::string& path) {
     return play(R"({"at": 0, "open": ")" + path + R"("}, {"at": 0.1, "wait": "bake"})", "0.2");
   };
-  EXPECT_EQ(picture(a + opening(b), kWindow).data, picture(b + play("") + " --offscreen").data);
-  EXPECT_EQ(picture(a + opening((s_.path / "absent").string()), kWindow).data,
+  EXPECT_EQ(picture(a + opening(b), kInWindow).data, picture(b + play("") + " --offscreen").data);
+  EXPECT_EQ(picture(a + opening((s_.path / "absent").string()), kInWindow).data,
             picture(a + play("") + " --offscreen").data);
   const std::string broken = s_.write("broken.glb", "glTF").string();
-  EXPECT_EQ(picture(a + opening(broken), kWindow).data,
+  EXPECT_EQ(picture(a + opening(broken), kInWindow).data,
             picture(a + play("") + " --offscreen").data);
   const std::string first = scene_file("cornell-box.glb") + " " + kFewTexels;
   const std::string second = scene_file("furnace-box.glb");
-  EXPECT_LT(apart(picture(first + opening(second), kWindow),
+  EXPECT_LT(apart(picture(first + opening(second), kInWindow),
                   picture(second + " " + kFewTexels + play("") + " --offscreen")),
             1e-3);
   const CommandResult refused = run(a + opening(b) + " --offscreen --screenshot x.png");
@@ -146,12 +142,12 @@ TEST_F(ViewFiles, OpenInAWindow) {
 }
 
 TEST_F(ViewFiles, AWindowThatClosesInMidBakeLeavesNothing) {
-  if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const auto begin = std::chrono::steady_clock::now();
   const CommandResult r =
       run(scene_file("office.glb") + " --resolution 512 --samples 65535 -o saved" +
               play(R"({"at": 0.5, "close": "window"})", "1"),
-          kWindow);
+          kInWindow);
   EXPECT_EQ(r.code, 0);
   EXPECT_EQ(r.out + r.err, "");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
@@ -160,10 +156,10 @@ TEST_F(ViewFiles, AWindowThatClosesInMidBakeLeavesNothing) {
 }
 
 TEST_F(ViewFiles, ALostDeviceIsASentence) {
-  if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string a = baked("a", "cornell-box.glb", kFewTexels);
   const std::string before = slurp(s_.path / "a" / "lightmap.exr");
-  const CommandResult r = run(a + play(R"({"at": 0.1, "lose": "device"})", "1"), kWindow);
+  const CommandResult r = run(a + play(R"({"at": 0.1, "lose": "device"})", "1"), kInWindow);
   EXPECT_EQ(r.code, 1);
   EXPECT_THAT(r.err, HasSubstr("lost"));
   EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << "one line: " << r.err;
@@ -198,11 +194,11 @@ std::string hills(int n) {
 // The window shows colours as soon as the file is read, and closes though the bake has hardly
 // begun.
 TEST_F(ViewFiles, SlowMillionTrianglesAreDrawn) {
-  if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string scene = s_.write("hills.ply", hills(708)).string();
   const auto begin = std::chrono::steady_clock::now();
   const image::Image shot =
-      picture(scene + play(R"({"at": 0.2, "close": "window"})", "1"), kWindow);
+      picture(scene + play(R"({"at": 0.2, "close": "window"})", "1"), kInWindow);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   rusage use{};

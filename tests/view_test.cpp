@@ -151,9 +151,8 @@ TEST(View, ShowsTwoBakesBesideOneAnother) {
     EXPECT_TRUE(nothing(shot(a, mode, "--offscreen"))) << mode;
     const image::Image other = shot(b, mode, "--offscreen");
     EXPECT_FALSE(nothing(other)) << mode;
-    if (shell("command -v xvfb-run").code != 0) continue;
-    const image::Image window =
-        shot(b, mode, "", "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+    if (!has_virtual_display()) continue;
+    const image::Image window = shot(b, mode, "", kInWindow);
     EXPECT_EQ(window.data, other.data) << mode;
   }
   const CommandResult refused = view(scene_file("cornell-box.glb") + " --beside " + a);
@@ -195,7 +194,7 @@ TEST(View, MixesLayers) {
 TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
   const ScratchFolder s;
   if (!has_device(s)) GTEST_SKIP() << "no graphics device";
-  if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string bake = (s.path / "baked").string();
   ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + bake +
                   " --resolution 64 --samples 4 --quiet")
@@ -211,9 +210,7 @@ TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
   };
   const std::string state = (s.path / "state").string();
   const CommandResult window =
-      view(bake + shot("window.png"),
-           "XDG_STATE_HOME=" + state +
-               " VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+      view(bake + shot("window.png"), "XDG_STATE_HOME=" + state + " " + kInWindow);
   ASSERT_EQ(window.code, 0) << window.err;
   EXPECT_EQ(window.out + window.err, "") << "the validation layer has nothing to say";
   EXPECT_FALSE(std::filesystem::exists(state)) << "a play is not remembered";
@@ -240,7 +237,7 @@ std::vector<double> column_of(const std::filesystem::path& csv, size_t column) {
 TEST(View, ASceneIsBakedWhileItIsLookedAt) {
   const ScratchFolder s;
   if (!has_device(s)) GTEST_SKIP() << "no graphics device";
-  if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string scene = scene_file("office.glb") + " --resolution 128 --samples 16 ";
   ASSERT_EQ(luxel("bake " + scene + " -o " + (s.path / "baked").string() + " --quiet").code, 0);
   const std::string play = s.write("play.json", R"({"end": 0.2, "events": [
@@ -249,10 +246,9 @@ TEST(View, ASceneIsBakedWhileItIsLookedAt) {
   const auto shot = [&](const std::string& name) {
     return scene + " --size 120x90 --play " + play + " --screenshot " + (s.path / name).string();
   };
-  const CommandResult window =
-      view(shot("window.png") + " -o " + (s.path / "saved").string() + " --frame-times " +
-               (s.path / "frames.csv").string(),
-           "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+  const CommandResult window = view(shot("window.png") + " -o " + (s.path / "saved").string() +
+                                        " --frame-times " + (s.path / "frames.csv").string(),
+                                    kInWindow);
   ASSERT_EQ(window.code, 0) << window.err;
   EXPECT_EQ(window.out + window.err, "wrote " + (s.path / "saved").string() + "\n");
   ASSERT_EQ(view(shot("without.png") + " --offscreen").code, 0);
@@ -313,12 +309,11 @@ TEST(View, SaysWhatIsWrong) {
   EXPECT_THAT(error(s.path.string() + shot, 1), HasSubstr("there is no baked.glb in it"));
   const std::string broken = s.write("broken.glb", "glTF").string();
   EXPECT_THAT(error(broken + shot, 1), HasSubstr("broken.glb"));
-  if (shell("command -v xvfb-run").code != 0) return;
+  if (!has_virtual_display()) return;
   // A play that waits for a bake which fails does not wait for ever.
   const std::string wait =
       s.write("wait.json", R"({"end": 1, "events": [{"at": 0, "wait": "bake"}]})").string();
-  EXPECT_THAT(error(broken + " --play " + wait, 1, "timeout 60 xvfb-run -a"),
-              HasSubstr("broken.glb"));
+  EXPECT_THAT(error(broken + " --play " + wait, 1, kInWindow), HasSubstr("broken.glb"));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
-  command -v xvfb-run >/dev/null || wanted+=(xvfb xauth)
+  command -v Xvfb >/dev/null || wanted+=(xvfb)
   # A graphics device without a graphics card, and who watches how it is used.
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || wanted+=(mesa-vulkan-drivers)
   compgen -G '/usr/share/vulkan/explicit_layer.d/*validation*.json' >/dev/null ||

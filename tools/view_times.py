@@ -4,7 +4,7 @@
     tools/view_times.py build/release/bin > docs/bench/view.MACHINE.csv     on an idle machine
     tools/view_times.py --self-test
 
-Each row is a play in a window of 640 x 480 on a virtual display (xvfb-run): a bake of scenes/office.glb seen in each
+Each row is a play in a window of 640 x 480 on a virtual display (Xvfb): a bake of scenes/office.glb seen in each
 way, solvers that are looked into when they have come to rest, a scene that is baked meanwhile, an object that
 is moved, until its first light is seen, an object and a lamp that are dragged, and for the lamp also what the update of
 its light alone takes. Without ../shared the living room and the city are left out.
@@ -114,11 +114,12 @@ class Player:
     def __init__(self, bin, folder):
         self.bin, self.folder = bin, folder
         root = pathlib.Path(__file__).parents[1]
+        self.display = root / "tools/on_virtual_display.sh"
         self.office, self.box = root / "scenes/office.glb", root / "scenes/cornell-box.glb"
 
     def all_frames(self, play, subject, *options):
         (self.folder / "play.json").write_text(json.dumps(play), encoding="utf-8")
-        run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", self.bin / "luxel-view", subject, *options, "--size", SIZE,
+        run(self.display, self.bin / "luxel-view", subject, *options, "--size", SIZE,
             "--play", self.folder / "play.json", "--frame-times", self.folder / "frames.csv")
         with open(self.folder / "frames.csv", newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))

@@ -149,7 +149,7 @@ Result<DeviceRates> rates_on_device(const gpu::Device& device, const validate::P
 
 void add_row(const std::string& scene, size_t rays, trace::HierarchyKind kind, double processor,
              const DeviceRates& on_device, Table& table) {
-  const char* name = kind == trace::HierarchyKind::wide ? "wide" : "binary";
+  const std::string name(name_of(kind));
   table.rows.push_back(
       {scene, std::to_string(on_device.triangles), fmt::format("{:.1f}", double(rays) * 1e-6),
        fmt::format("{:.2f}", processor * 1e-6), name,
@@ -178,8 +178,10 @@ Status measure_scene(const std::string& name, scene::Scene loaded, const gpu::De
   const Rays rays = rays_of(*p, most_rays(device));
   std::vector<trace::Hit> expected(rays.sorted.size());
   const double processor = processor_rate(*p->tracer, rays.sorted, expected);
-  for (const trace::HierarchyKind kind :
-       {trace::HierarchyKind::binary, trace::HierarchyKind::wide}) {
+  using trace::HierarchyKind;
+  for (const HierarchyKind kind :
+       {HierarchyKind::binary, HierarchyKind::wide, HierarchyKind::driver}) {
+    if (kind == HierarchyKind::driver && !device.has_ray_queries) continue;
     LUXEL_TRY(const DeviceRates on_device, rates_on_device(device, *p, kind, rays, expected));
     add_row(name, rays.sorted.size(), kind, processor, on_device, table);
   }

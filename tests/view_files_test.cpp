@@ -38,7 +38,9 @@ class ViewFiles : public ::testing::Test {
   image::Image picture(const std::string& arguments, const std::string& before = "") {
     const CommandResult r = run(arguments + " --screenshot shot.png", before);
     EXPECT_EQ(r.code, 0) << r.err;
-    if (!before.empty()) EXPECT_EQ(r.out + r.err, "") << "the validation layer has nothing to say";
+    if (!before.empty()) {
+      EXPECT_EQ(r.out + r.err, "") << "the validation layer has nothing to say";
+    }
     return png_at(s_.path / "shot.png");
   }
   const ScratchFolder s_;

@@ -129,7 +129,7 @@ TEST(View, ShowsTwoBakesBesideOneAnother) {
                   .code,
               0);
   const auto shot = [&](const std::string& beside, const std::string& mode, const char* more = "",
-                        const char* before = "") {
+                        const std::string& before = "") {
     const auto play =
         s.write("play.json", R"({"end": 0, "events": [{"at": 0, "beside": ")" + mode + "\"}]}");
     const std::string file = (s.path / "view.png").string();
@@ -137,7 +137,9 @@ TEST(View, ShowsTwoBakesBesideOneAnother) {
                                      play.string() + " --screenshot " + file + " " + more,
                                  before);
     EXPECT_EQ(r.code, 0) << r.err;
-    if (*before) EXPECT_EQ(r.out + r.err, "") << "the validation layer has nothing to say";
+    if (!before.empty()) {
+      EXPECT_EQ(r.out + r.err, "") << "the validation layer has nothing to say";
+    }
     return png_at(file);
   };
   const auto nothing = [&](const image::Image& picture) {

@@ -94,7 +94,17 @@ struct Features {
       structure<VkPhysicalDeviceSynchronization2FeaturesKHR>(
           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES_KHR);
 
+  // Asked for where knows_ray_queries().
+  VkPhysicalDeviceAccelerationStructureFeaturesKHR acceleration =
+      structure<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
+          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
+  VkPhysicalDeviceRayQueryFeaturesKHR ray_query = structure<VkPhysicalDeviceRayQueryFeaturesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR);
+
   Features() { base.pNext = &v12, v12.pNext = &rendering, rendering.pNext = &synchronization; }
+  void chain_ray_queries() {
+    synchronization.pNext = &acceleration, acceleration.pNext = &ray_query;
+  }
   Features(const Features&) = delete;
   Features& operator=(const Features&) = delete;
 };
@@ -113,6 +123,10 @@ constexpr Need kNeeds[] = {
 };
 constexpr const char* kExtensions[] = {VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME,
                                        VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
+
+constexpr const char* kRayQueryExtensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                               VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+                                               VK_KHR_RAY_QUERY_EXTENSION_NAME};
 
 bool has_extension(VkPhysicalDevice device, const char* name) {
   uint32_t count = 0;
@@ -146,6 +160,15 @@ std::string what_it_lacks(VkPhysicalDevice device, const VkPhysicalDevicePropert
   for (const Need& need : kNeeds)
     if (!need.in(features)) return need.name;
   return {};
+}
+
+bool knows_ray_queries(VkPhysicalDevice device) {
+  for (const char* name : kRayQueryExtensions)
+    if (!has_extension(device, name)) return false;
+  Features features;
+  features.chain_ray_queries();
+  vkGetPhysicalDeviceFeatures2(device, &features.base);
+  return features.acceleration.accelerationStructure && features.ray_query.rayQuery;
 }
 
 struct Candidate {
@@ -312,6 +335,12 @@ Status Device::open_device(const DeviceParams& params) {
   wanted.base.features.shaderFloat64 = has.shaderFloat64;
   std::vector<const char*> extensions(std::begin(kExtensions), std::end(kExtensions));
   if (!params.window_extensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  has_ray_queries = knows_ray_queries(physical);
+  if (has_ray_queries) {
+    for (const char* name_of_one : kRayQueryExtensions) extensions.push_back(name_of_one);
+    wanted.chain_ray_queries();
+    wanted.acceleration.accelerationStructure = wanted.ray_query.rayQuery = VK_TRUE;
+  }
   auto info = structure<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &wanted.base;
   info.queueCreateInfoCount = 1;

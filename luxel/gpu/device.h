@@ -59,7 +59,8 @@ class Device {
   std::string name;
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   VkPhysicalDeviceLimits limits{};
-  bool has_doubles = false;  ///< whether shaders may compute in double precision
+  bool has_doubles = false;      ///< whether shaders may compute in double precision
+  bool has_ray_queries = false;  ///< whether it has acceleration.h, and shaders may trace by it
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;

@@ -4,8 +4,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
-#include "luxel/light/device/shaders/direct_light_binary.comp.h"
-#include "luxel/light/device/shaders/direct_light_wide.comp.h"
+#include "luxel/light/device/shaders/direct_light.comp.h"
 #include "luxel/light/shadow_rays.h"
 
 namespace luxel::light {
@@ -68,9 +67,7 @@ std::vector<DirectStep> steps_of(const Lights& lights) {
 }  // namespace
 
 Status DeviceDirectLight::make_steps(const trace::DeviceRayTracer& tracer, const Lights& lights) {
-  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
-  const gpu::Spirv shader =
-      wide ? gpu::Spirv(direct_light_wide_comp) : gpu::Spirv(direct_light_binary_comp);
+  const gpu::Spirv shader = direct_light_comp(tracer.kind());
   const bool all_even =
       std::ranges::none_of(lights.triangles, &TriangleLight::textured) && lights.profiles.empty();
   for (const DirectStep step : steps_of(lights)) {

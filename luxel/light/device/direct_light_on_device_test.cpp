@@ -146,8 +146,8 @@ TEST_F(DirectLightOnDevice, IsThatOfTheProcessor) {
   expect_the_same(blocks_under_a_bright_sky(), 64, binary);
 }
 
-// A leaf with holes lets light through by chance; glass and masks alike.
-TEST_F(DirectLightOnDevice, PassesHoles) {
+/// A leaf with holes lets light through by chance; glass and masks alike.
+scene::Scene blocks_under_a_leaf() {
   scene::Scene scene = blocks_under_punctual_lights();
   const uint32_t leaf = scene::add_material(scene, "leaf", {0.5f, 0.5f, 0.5f}, {});
   scene::Texture texture;
@@ -162,7 +162,17 @@ TEST_F(DirectLightOnDevice, PassesHoles) {
   scene::add_rectangle(scene, {-3, 3, -3, 3}, 1, true, leaf);
   scene::Mesh& mesh = scene.meshes[scene.instances.back().mesh];
   for (const Vec3& p : mesh.positions) mesh.uv0.push_back({p.x, p.z});
-  expect_the_same(scene, 32, trace::HierarchyKind::wide);
+  return scene;
+}
+
+TEST_F(DirectLightOnDevice, PassesHoles) {
+  expect_the_same(blocks_under_a_leaf(), 32, trace::HierarchyKind::wide);
+}
+
+TEST_F(DirectLightOnDevice, IsThatOfTheProcessorByRayQueries) {
+  if (!device_->has_ray_queries) GTEST_SKIP() << device_->name << " has no ray queries";
+  expect_the_same(scene::cornell_box(), 64, trace::HierarchyKind::driver);
+  expect_the_same(blocks_under_a_leaf(), 32, trace::HierarchyKind::driver);
 }
 
 /// Blocks under a lamp with a coloured picture, which is cut into pieces; mirrored, or not.

@@ -8,10 +8,8 @@
 #include "luxel/base/check.h"
 #include "luxel/gpu/pieces.h"
 #include "luxel/reference/device/path_buffers.h"
-#include "luxel/reference/device/shaders/eye_binary.comp.h"
-#include "luxel/reference/device/shaders/eye_wide.comp.h"
-#include "luxel/reference/device/shaders/paths_binary.comp.h"
-#include "luxel/reference/device/shaders/paths_wide.comp.h"
+#include "luxel/reference/device/shaders/eye.comp.h"
+#include "luxel/reference/device/shaders/paths.comp.h"
 #include "luxel/reference/sums.h"
 #include "luxel/scene/sides.h"
 #include "luxel/trace/camera_rays.h"
@@ -227,15 +225,12 @@ Result<DevicePathTracer> DevicePathTracer::make(const gpu::Device& device,
   LUXEL_TRY(trace::DeviceRayTracer on_device, trace::DeviceRayTracer::build(device, scene));
   impl->tracer.emplace(std::move(on_device));
   LUXEL_TRY(impl->world, upload_world(*impl->commands, *impl->tracer, traced_scene(scene, tracer)));
-  const bool wide = impl->tracer->kind() == trace::HierarchyKind::wide;
+  const trace::HierarchyKind kind = impl->tracer->kind();
   const std::vector<uint32_t> constants{impl->tracer->shader_constant()};
-  LUXEL_TRY(impl->paths,
-            gpu::make_compute_pipeline(
-                device, wide ? gpu::Spirv(paths_wide_comp) : gpu::Spirv(paths_binary_comp),
-                {sizeof(PathPush), {}}, constants));
-  LUXEL_TRY(impl->eye, gpu::make_compute_pipeline(
-                           device, wide ? gpu::Spirv(eye_wide_comp) : gpu::Spirv(eye_binary_comp),
-                           {sizeof(EyePush), {}}, constants));
+  LUXEL_TRY(impl->paths, gpu::make_compute_pipeline(device, paths_comp(kind),
+                                                    {sizeof(PathPush), {}}, constants));
+  LUXEL_TRY(impl->eye,
+            gpu::make_compute_pipeline(device, eye_comp(kind), {sizeof(EyePush), {}}, constants));
   return DevicePathTracer(std::move(impl));
 }
 

@@ -9,8 +9,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/device/device_surroundings.h"
-#include "luxel/solve/device/shaders/hemicubes_binary.comp.h"
-#include "luxel/solve/device/shaders/hemicubes_wide.comp.h"
+#include "luxel/solve/device/shaders/hemicubes.comp.h"
 #include "luxel/solve/hemicube/item_buffer.h"
 #include "luxel/trace/vulkan/device_pictures.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
@@ -167,13 +166,10 @@ struct LookShader {
   gpu::PieceSize piece{16};  ///< of viewpoints
 };
 Result<LookShader> look_shader(const trace::DeviceRayTracer& tracer) {
-  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
   LookShader out;
   LUXEL_TRY(out.pipeline,
-            gpu::make_compute_pipeline(
-                tracer.device(),
-                wide ? gpu::Spirv(hemicubes_wide_comp) : gpu::Spirv(hemicubes_binary_comp),
-                {sizeof(LookPush), {}}, {tracer.shader_constant()}));
+            gpu::make_compute_pipeline(tracer.device(), hemicubes_comp(tracer.kind()),
+                                       {sizeof(LookPush), {}}, {tracer.shader_constant()}));
   return out;
 }
 

@@ -9,8 +9,7 @@
 #include "luxel/base/clock.h"
 #include "luxel/gpu/pieces.h"
 #include "luxel/solve/device/relight_buffers.h"
-#include "luxel/solve/device/shaders/relight_direct_binary.comp.h"
-#include "luxel/solve/device/shaders/relight_direct_wide.comp.h"
+#include "luxel/solve/device/shaders/relight_direct.comp.h"
 #include "luxel/solve/device/shaders/relight_steps.comp.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
 
@@ -121,11 +120,8 @@ Status DeviceRelighter::Impl::make_pipelines() {
     LUXEL_TRY(step[k], gpu::make_compute_pipeline(device, relight_steps_comp,
                                                   {sizeof(StepPush), {}}, {uint32_t(k)}));
   }
-  const bool wide = tracer->kind() == trace::HierarchyKind::wide;
   LUXEL_TRY(direct,
-            gpu::make_compute_pipeline(device,
-                                       wide ? gpu::Spirv(relight_direct_wide_comp)
-                                            : gpu::Spirv(relight_direct_binary_comp),
+            gpu::make_compute_pipeline(device, relight_direct_comp(tracer->kind()),
                                        {sizeof(DirectPush), {}}, {tracer->shader_constant()}));
   return {};
 }

@@ -2,8 +2,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/gpu/pieces.h"
-#include "luxel/solve/device/shaders/first_hits_binary.comp.h"
-#include "luxel/solve/device/shaders/first_hits_wide.comp.h"
+#include "luxel/solve/device/shaders/first_hits.comp.h"
 
 namespace luxel::device {
 namespace {
@@ -33,12 +32,9 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
   LUXEL_TRY(out.hits,
             gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(trace::DeviceHit),
                              gpu::Access::device, "the buffer of hits"));
-  const bool wide = tracer.kind() == trace::HierarchyKind::wide;
-  LUXEL_TRY(
-      out.pipeline,
-      gpu::make_compute_pipeline(
-          device, wide ? gpu::Spirv(first_hits_wide_comp) : gpu::Spirv(first_hits_binary_comp),
-          {sizeof(HitsPush), {}}, {tracer.shader_constant()}));
+  LUXEL_TRY(out.pipeline,
+            gpu::make_compute_pipeline(device, first_hits_comp(tracer.kind()),
+                                       {sizeof(HitsPush), {}}, {tracer.shader_constant()}));
   return out;
 }
 

@@ -49,8 +49,10 @@ TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
   const transport::Elements elements = elements_on_sphere(350);  // no multiple of 64
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   const auto embree = trace::RayTracer::build(scene);
-  for (const trace::HierarchyKind kind :
-       {trace::HierarchyKind::binary, trace::HierarchyKind::wide}) {
+  using trace::HierarchyKind;
+  for (const HierarchyKind kind :
+       {HierarchyKind::binary, HierarchyKind::wide, HierarchyKind::driver}) {
+    if (kind == HierarchyKind::driver && !device_->has_ray_queries) continue;
     const auto tracer = trace::DeviceRayTracer::build(*device_, scene, kind);
     ASSERT_TRUE(tracer);
     for (const uint32_t samples : {32u, 64u, 100u, 128u}) {

@@ -11,8 +11,7 @@
 #include "luxel/solve/device/open_list.h"
 #include "luxel/solve/device/ray_slots.h"
 #include "luxel/solve/device/shaders/escaped_light.comp.h"
-#include "luxel/solve/device/shaders/landed_rays_binary.comp.h"
-#include "luxel/solve/device/shaders/landed_rays_wide.comp.h"
+#include "luxel/solve/device/shaders/landed_rays.comp.h"
 #include "luxel/solve/gather/rays/ray_tile.h"
 #include "luxel/solve/gather/trace/follow_many.h"
 #include "luxel/solve/gather/trace/kept_hits.h"
@@ -319,12 +318,9 @@ Result<LandedRays> begin_rays(const DeviceScene& scene, const gather::TraceParam
   if (in.sides) mixed = in.sides->mixed;
   LUXEL_TRY(out.mixed,
             gpu::uploaded_or_one(commands, mixed, "the buffer of walls in the lightmap"));
-  const bool wide = scene.tracer.kind() == trace::HierarchyKind::wide;
   LUXEL_TRY(out.land,
-            gpu::make_compute_pipeline(
-                commands.device(),
-                wide ? gpu::Spirv(landed_rays_wide_comp) : gpu::Spirv(landed_rays_binary_comp),
-                {sizeof(LandPush), {}}, {scene.tracer.shader_constant()}));
+            gpu::make_compute_pipeline(commands.device(), landed_rays_comp(scene.tracer.kind()),
+                                       {sizeof(LandPush), {}}, {scene.tracer.shader_constant()}));
   const light::Surroundings& around = in.lights.around;
   out.is_dark_around = !shines(in.scene, around);
   if (out.is_dark_around) return out;

@@ -192,6 +192,13 @@ TEST_F(LandedRaysOnDevice, BringWhatTheProcessorsBring) {
   expect_the_same(*gather::lay_out(walls_on_a_floor(), 64), binary, 100);
 }
 
+TEST_F(LandedRaysOnDevice, BringTheSameByRayQueries) {
+  if (!device_->has_ray_queries) GTEST_SKIP() << device_->name << " has no ray queries";
+  const auto driver = trace::HierarchyKind::driver;
+  expect_the_same(*gather::lay_out(scene::cornell_box(), 64), driver, 64);
+  expect_the_same(*gather::lay_out(leaf_over_a_floor(true), 64), driver, 64);
+}
+
 // Rays land in the same places each time, whatever order the device works in.
 TEST_F(LandedRaysOnDevice, BringTheSameBitsEachTime) {
   const auto room = gather::lay_out(leaf_over_a_floor(false), 48);

@@ -2,78 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
-#include "luxel/trace/shared_meshes.h"
+#include "luxel/base/check.h"
+#include "luxel/trace/vulkan/stored_triangles.h"
 
 namespace luxel::trace {
 namespace {
-
-/// Drawn triangles have numbers below it: shaders keep both sides of each in a table, whose numbers
-/// are below 2^31.
-constexpr uint64_t kMostDrawn = uint64_t(1) << 30;
-
-/// A shared mesh: its triangles in its own space, numbered from 0 on.
-struct SharedMesh {
-  uint32_t mesh = 0;
-  std::vector<uint32_t> instances;
-  std::vector<DeviceTriangle> triangles;
-  Box3 box;
-  uint32_t root = 0;  ///< node
-};
-
-/// What is stored: before it is sorted.
-struct Stored {
-  std::vector<DeviceTriangle> in_world;
-  std::vector<SharedMesh> shared;
-
-  size_t size() const {
-    size_t out = in_world.size();
-    for (const SharedMesh& s : shared) out += s.triangles.size() + 3 * s.instances.size();
-    return out;
-  }
-};
-
-Stored stored_triangles(const scene::Scene& scene, size_t max_flat_triangles) {
-  const std::vector<bool> is_shared = shared_meshes(scene, max_flat_triangles);
-  const std::vector<uint32_t> first = scene::first_triangles(scene);
-  std::vector<uint32_t> place(scene.meshes.size(), scene::kNone);
-  Stored out;
-  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const scene::Instance& instance = scene.instances[i];
-    if (!is_shared[instance.mesh] || !can_be_undone(instance.world_from_object)) {
-      add_triangles(scene.meshes[instance.mesh], instance.world_from_object, first[i],
-                    out.in_world);
-      continue;
-    }
-    uint32_t& there = place[instance.mesh];
-    if (there == scene::kNone) {
-      there = uint32_t(out.shared.size());
-      SharedMesh& mesh = out.shared.emplace_back();
-      mesh.mesh = instance.mesh;
-      add_triangles(scene.meshes[instance.mesh], {}, first[i], mesh.triangles);
-      for (const DeviceTriangle& t : mesh.triangles)
-        for (const Vec3 p : {t.a, t.b, t.c}) mesh.box.extend(p);
-    }
-    out.shared[there].instances.push_back(i);
-  }
-  // A mesh without triangles has nothing to meet.
-  std::erase_if(out.shared, [](const SharedMesh& mesh) { return mesh.triangles.empty(); });
-  return out;
-}
-
-/// Surfaces that let light through, of all that is stored. Triangles of shared meshes, which have
-/// the numbers of their first instance so far, are numbered from 0 on afterwards.
-SeeThrough take_see_through(const scene::Scene& scene, Stored& stored) {
-  SeeThrough out;
-  SeeThroughFinder finder(scene, out);
-  finder.find(stored.in_world);
-  const std::vector<uint32_t> first = scene::first_triangles(scene);
-  for (SharedMesh& mesh : stored.shared) {
-    finder.find(mesh.triangles);
-    for (DeviceTriangle& t : mesh.triangles) t.number -= first[mesh.instances.front()];
-  }
-  return out;
-}
 
 /// The inverse of an invertible transform.
 Mat34 inverse_of(const Mat34& m) {
@@ -131,7 +66,7 @@ uint32_t append(std::vector<DeviceTriangle> triangles, HierarchyKind kind, float
 }
 
 /// Triangles that stand for the instances of shared meshes, numbered from 0 on.
-void add_instances(const scene::Scene& scene, const Stored& stored, float margin_m,
+void add_instances(const scene::Scene& scene, const StoredTriangles& stored, float margin_m,
                    std::vector<DeviceTriangle>& out) {
   uint32_t number = 0;
   const Vec3 margin{margin_m, margin_m, margin_m};
@@ -144,17 +79,17 @@ void add_instances(const scene::Scene& scene, const Stored& stored, float margin
 }
 
 /// The places of instances, behind all triangles; those that stand for them get to know where.
-void place_instances(const scene::Scene& scene, const Stored& stored, size_t in_world,
-                     DeviceHierarchy& out) {
+void place_instances(const scene::Scene& scene, const StoredTriangles& stored, size_t in_world,
+                     std::span<const uint32_t> roots, DeviceHierarchy& out) {
   const auto places = uint32_t(out.triangles.size());
   for (size_t k = 0; k < in_world; ++k) {
     DeviceTriangle& t = out.triangles[k];
     if (t.mirrored == kStandsForInstance) t.number = places + 2 * t.number;
   }
   const std::vector<uint32_t> first = scene::first_triangles(scene);
-  for (const SharedMesh& mesh : stored.shared)
-    for (const uint32_t i : mesh.instances) {
-      const DeviceInstance place{inverse_of(scene.instances[i].world_from_object), mesh.root,
+  for (size_t m = 0; m < stored.shared.size(); ++m)
+    for (const uint32_t i : stored.shared[m].instances) {
+      const DeviceInstance place{inverse_of(scene.instances[i].world_from_object), roots[m],
                                  first[i], i};
       const auto both = std::bit_cast<std::array<DeviceTriangle, 2>>(place);
       out.triangles.insert(out.triangles.end(), {both[0], both[1]});
@@ -171,20 +106,17 @@ float reach_in(const SharedMesh& mesh, const scene::Scene& scene, const Box3& wo
 
 }  // namespace
 
+std::string_view name_of(HierarchyKind kind) {
+  constexpr std::string_view kNames[] = {"binary", "wide", "driver"};
+  return kNames[size_t(kind)];
+}
+
 Result<DeviceHierarchy> device_hierarchy(const scene::Scene& scene, HierarchyKind kind,
                                          size_t max_flat_triangles) {
-  uint64_t drawn = 0;
-  for (const scene::Instance& i : scene.instances) drawn += scene.meshes[i.mesh].triangles.size();
-  if (drawn >= kMostDrawn)
-    return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
-                kMostDrawn - 1, drawn);
-  Stored stored = stored_triangles(scene, max_flat_triangles);
-  if (stored.size() >= ChildRef::kFirstMask)
-    return fail(ErrorCode::unsupported,
-                "rays on the device know at most {} triangles that are no copies, not {}",
-                ChildRef::kFirstMask - 1, stored.size());
+  LUXEL_CHECK(kind != HierarchyKind::driver);
+  LUXEL_TRY(StoredTriangles stored, stored_triangles(scene, max_flat_triangles));
   DeviceHierarchy out;
-  out.see_through = take_see_through(scene, stored);
+  out.see_through = std::move(stored.see_through);
   out.has_instances = !stored.shared.empty();
   const Box3 world = scene::world_bounds(scene);
   const float reach = reach_of(world);
@@ -192,9 +124,10 @@ Result<DeviceHierarchy> device_hierarchy(const scene::Scene& scene, HierarchyKin
   add_instances(scene, stored, 0x1p-20f * reach, top);
   const size_t in_world = top.size();
   append(std::move(top), kind, reach, out);
+  std::vector<uint32_t> roots;
   for (SharedMesh& mesh : stored.shared)
-    mesh.root = append(std::move(mesh.triangles), kind, reach_in(mesh, scene, world), out);
-  place_instances(scene, stored, in_world, out);
+    roots.push_back(append(std::move(mesh.triangles), kind, reach_in(mesh, scene, world), out));
+  place_instances(scene, stored, in_world, roots, out);
   return out;
 }
 

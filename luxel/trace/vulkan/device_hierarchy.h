@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "luxel/base/result.h"
 #include "luxel/trace/vulkan/see_through.h"
@@ -10,9 +11,14 @@
 
 namespace luxel::trace {
 
-/// How triangles are sorted: two children a node with boxes of floats, or eight with boxes of
-/// bytes.
-enum class HierarchyKind : uint8_t { binary, wide };
+/// How triangles are sorted.
+enum class HierarchyKind : uint8_t {
+  binary,  ///< two children a node, with boxes of floats
+  wide,    ///< eight, with boxes of bytes
+  driver,  ///< as the driver likes it (driver_hierarchy.h): VK_KHR_ray_query
+};
+/// "binary", "wide", "driver"
+std::string_view name_of(HierarchyKind kind);
 
 /// Where an instance of a shared mesh stands; it takes the place of two triangles. In the mesh's
 /// own space no triangle is mirrored.
@@ -40,8 +46,7 @@ struct DeviceHierarchy {
   bool has_instances = false;
 };
 
-/// Meshes are shared as trace::RayTracer shares them. Errors: 2^28 - 1 triangles or more are to be
-/// stored, 2^30 or more are drawn (ErrorCode::unsupported).
+/// Binary or wide. Errors: those of stored_triangles().
 Result<DeviceHierarchy> device_hierarchy(const scene::Scene& scene, HierarchyKind kind,
                                          size_t max_flat_triangles);
 

@@ -7,10 +7,9 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/scene/sides.h"
-#include "luxel/trace/vulkan/shaders/closest_binary.comp.h"
-#include "luxel/trace/vulkan/shaders/closest_wide.comp.h"
-#include "luxel/trace/vulkan/shaders/occluded_binary.comp.h"
-#include "luxel/trace/vulkan/shaders/occluded_wide.comp.h"
+#include "luxel/trace/vulkan/faster_hierarchy.h"
+#include "luxel/trace/vulkan/shaders/closest.comp.h"
+#include "luxel/trace/vulkan/shaders/occluded.comp.h"
 
 namespace luxel::trace {
 namespace {
@@ -18,6 +17,7 @@ namespace {
 constexpr size_t kGroup = 64;  // as the shaders have it
 /// Beyond it, products of lengths are no floats.
 constexpr float kLargestScene_m = 1e15f;
+constexpr std::string_view kTriangles = "the buffer of triangles";
 
 struct TracePush {
   DeviceWorld world;
@@ -26,10 +26,6 @@ struct TracePush {
 };
 
 }  // namespace
-
-HierarchyKind faster_hierarchy(const gpu::Device& device) {
-  return device.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? HierarchyKind::wide : HierarchyKind::binary;
-}
 
 DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene,
                                  gpu::Commands commands)
@@ -43,32 +39,44 @@ Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind, size_t max_flat_tri
   if (!(scene::world_bounds(*scene_).diagonal() < kLargestScene_m))
     return fail(ErrorCode::unsupported, "rays on the device know no scene of more than {} m",
                 kLargestScene_m);
+  if (kind == HierarchyKind::driver) return upload_driver_hierarchy(max_flat_triangles);
   LUXEL_TRY(const DeviceHierarchy hierarchy, device_hierarchy(*scene_, kind, max_flat_triangles));
   triangle_count_ = hierarchy.triangles.size(), has_instances_ = hierarchy.has_instances;
-  constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
-  const SeeThrough& open = hierarchy.see_through;
-  lets_light_through_ = !open.triangles.empty();
-  LUXEL_TRY(open_materials_, gpu::uploaded_or_one(commands_, open.materials, kOpen));
-  LUXEL_TRY(open_triangles_, gpu::uploaded_or_one(commands_, open.triangles, kOpen));
-  LUXEL_TRY(open_texels_, gpu::uploaded_or_one(commands_, open.texels, kOpen));
+  LUXEL_TRY_STATUS(upload_see_through(hierarchy.see_through));
   constexpr std::string_view kBoxes = "the buffer of boxes around triangles";
   LUXEL_TRY(nodes_, kind == HierarchyKind::wide
                         ? gpu::uploaded_or_one(commands_, hierarchy.wide, kBoxes)
                         : gpu::uploaded_or_one(commands_, hierarchy.binary, kBoxes));
-  LUXEL_TRY(triangles_,
-            gpu::uploaded_or_one(commands_, hierarchy.triangles, "the buffer of triangles"));
+  LUXEL_TRY(triangles_, gpu::uploaded_or_one(commands_, hierarchy.triangles, kTriangles));
   return {};
 }
 
-Status DeviceRayTracer::make_pipelines(HierarchyKind kind) {
-  const bool wide = kind == HierarchyKind::wide;
+Status DeviceRayTracer::upload_driver_hierarchy(size_t max_flat_triangles) {
+  LUXEL_CHECK(device_->has_ray_queries);
+  LUXEL_TRY(const DriverHierarchy hierarchy, driver_hierarchy(*scene_, max_flat_triangles));
+  triangle_count_ = hierarchy.triangles.size(), has_instances_ = hierarchy.has_instances;
+  LUXEL_TRY_STATUS(upload_see_through(hierarchy.see_through));
+  LUXEL_TRY(triangles_, gpu::uploaded_or_one(commands_, hierarchy.triangles, kTriangles));
+  LUXEL_TRY(driver_, accelerate(commands_, hierarchy, triangles_));
+  return {};
+}
+
+Status DeviceRayTracer::upload_see_through(const SeeThrough& open) {
+  constexpr std::string_view kOpen = "the buffer of surfaces that let light through";
+  lets_light_through_ = !open.triangles.empty();
+  LUXEL_TRY(open_materials_, gpu::uploaded_or_one(commands_, open.materials, kOpen));
+  LUXEL_TRY(open_triangles_, gpu::uploaded_or_one(commands_, open.triangles, kOpen));
+  LUXEL_TRY(open_texels_, gpu::uploaded_or_one(commands_, open.texels, kOpen));
+  return {};
+}
+
+Status DeviceRayTracer::make_pipelines() {
   const auto make = [&](gpu::Spirv shader) {
     return gpu::make_compute_pipeline(*device_, shader, {sizeof(TracePush), {}},
                                       {shader_constant()});
   };
-  LUXEL_TRY(closest_, make(wide ? gpu::Spirv(closest_wide_comp) : gpu::Spirv(closest_binary_comp)));
-  LUXEL_TRY(occluded_,
-            make(wide ? gpu::Spirv(occluded_wide_comp) : gpu::Spirv(occluded_binary_comp)));
+  LUXEL_TRY(closest_, make(closest_comp(kind_)));
+  LUXEL_TRY(occluded_, make(occluded_comp(kind_)));
   return {};
 }
 
@@ -77,12 +85,19 @@ Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device, const 
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   DeviceRayTracer out(device, scene, std::move(commands));
   LUXEL_TRY_STATUS(out.upload_hierarchy(kind, max_flat_triangles));
-  LUXEL_TRY_STATUS(out.make_pipelines(kind));
+  LUXEL_TRY_STATUS(out.make_pipelines());
   return out;
 }
 
+Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device,
+                                               const scene::Scene& scene) {
+  LUXEL_TRY(const HierarchyKind kind, faster_hierarchy(device));
+  return build(device, scene, kind);
+}
+
 DeviceWorld DeviceRayTracer::world() const {
-  return {nodes_.address, triangles_.address, open_materials_.address, open_triangles_.address,
+  return {kind_ == HierarchyKind::driver ? driver_.world.address : nodes_.address,
+          triangles_.address, open_materials_.address, open_triangles_.address,
           open_texels_.address};
 }
 

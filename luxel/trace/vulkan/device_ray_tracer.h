@@ -10,6 +10,7 @@
 #include "luxel/gpu/pipeline.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/trace/vulkan/device_hierarchy.h"
+#include "luxel/trace/vulkan/driver_hierarchy.h"
 
 namespace luxel::trace {
 
@@ -29,11 +30,8 @@ struct DeviceHit {
 };
 static_assert(sizeof(DeviceHit) == 16 && sizeof(Ray) == 32);
 
-/// The kind that traced rays faster where `luxel bench gpu` was run: wide on a processor that plays
-/// a device, binary on a data-centre GPU (docs/method/gpu.md).
-HierarchyKind faster_hierarchy(const gpu::Device& device);
-
-/// Where shaders find what rays are traced through: World in shaders/ray.glsl.
+/// Where shaders find what rays are traced through: World in shaders/ray.glsl. `nodes` is the
+/// driver's own hierarchy where that is the kind.
 struct DeviceWorld {
   VkDeviceAddress nodes = 0, triangles = 0, open_materials = 0, open_triangles = 0, open_texels = 0;
 };
@@ -45,14 +43,14 @@ struct DeviceWorld {
 /// `device` and `scene` are kept by reference and must outlive it. One thread at a time uses it.
 class DeviceRayTracer {
  public:
-  /// Errors: those of device_hierarchy(), a scene of 10^15 m (ErrorCode::unsupported), no memory,
-  /// the device is lost.
+  /// `kind`: HierarchyKind::driver only where Device::has_ray_queries. Errors: those of
+  /// stored_triangles() and driver_hierarchy(), a scene of 10^15 m (ErrorCode::unsupported), no
+  /// memory, the device is lost.
   static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene,
                                        HierarchyKind kind,
                                        size_t max_flat_triangles = kMaxFlatTriangles);
-  static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene) {
-    return build(device, scene, faster_hierarchy(device));
-  }
+  /// By faster_hierarchy().
+  static Result<DeviceRayTracer> build(const gpu::Device& device, const scene::Scene& scene);
 
   /// hits[i] is what rays[i] meets first. Sizes are equal. They go to the device and back in parts
   /// of at most kRaysAtATime. Errors: no memory, the device is lost.
@@ -71,8 +69,8 @@ class DeviceRayTracer {
   /// from.
   Hit hit_of(const DeviceHit& met) const;
 
-  /// For shaders that trace rays themselves: they include shaders/binary.glsl or shaders/wide.glsl,
-  /// as kind() is, and get shader_constant() as their constant 0.
+  /// For shaders that trace rays themselves: they include shaders/hierarchy.glsl, are compiled for
+  /// kind() (luxel_ray_shaders() in CMake), and get shader_constant() as their constant 0.
   DeviceWorld world() const;
   HierarchyKind kind() const { return kind_; }
   uint32_t shader_constant() const {
@@ -88,7 +86,9 @@ class DeviceRayTracer {
  private:
   DeviceRayTracer(const gpu::Device& device, const scene::Scene& scene, gpu::Commands commands);
   Status upload_hierarchy(HierarchyKind kind, size_t max_flat_triangles);
-  Status make_pipelines(HierarchyKind kind);
+  Status upload_driver_hierarchy(size_t max_flat_triangles);
+  Status upload_see_through(const SeeThrough& open);
+  Status make_pipelines();
   Result<double> dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays, VkDeviceAddress out,
                           size_t count);
   /// Sends rays there part by part; the answers of [first, first + count) then lie in answered_.
@@ -106,6 +106,7 @@ class DeviceRayTracer {
   // Whether some triangle does, and whether meshes are shared: shaders without are faster.
   bool lets_light_through_ = false, has_instances_ = false;
   gpu::Buffer nodes_, triangles_;
+  DriverAcceleration driver_;  ///< instead of nodes_; ends before triangles_
   gpu::Buffer open_materials_, open_triangles_, open_texels_;  ///< SeeThrough
   gpu::Pipeline closest_, occluded_;
   gpu::PieceSize piece_;

@@ -17,6 +17,11 @@ using ::testing::IsEmpty;
 class DeviceRays : public gpu::testing::OnDevice,
                    public ::testing::WithParamInterface<HierarchyKind> {
  protected:
+  void SetUp() override {
+    OnDevice::SetUp();
+    if (device_ && !device_->has_ray_queries && GetParam() == HierarchyKind::driver)
+      GTEST_SKIP() << device_->name << " has no ray queries";
+  }
   DeviceRayTracer built(const scene::Scene& scene) {
     auto tracer = DeviceRayTracer::build(*device_, scene, GetParam());
     EXPECT_TRUE(tracer) << tracer.error().message;
@@ -113,21 +118,28 @@ TEST_P(DeviceRays, MeetWhatTheProcessorsMeet) {
 }
 
 // A closed sphere around the origin: no ray slips out between two triangles, also exactly through
-// corners and edges.
+// edges and corners. Drivers promise less: edges are all that Vulkan asks of them. lavapipe lets
+// one ray in forty pass that is aimed exactly at a corner.
 TEST_P(DeviceRays, DoNotSlipThroughAClosedSurface) {
   const scene::Scene scene = scene::inward_sphere(1, 4, {0.5f, 0.5f, 0.5f}, {});
   const scene::Mesh& mesh = scene.meshes[0];
-  std::vector<Ray> rays;
-  for (const Vec3& corner : mesh.positions) rays.push_back({{}, 0, corner, INFINITY});
+  std::vector<Ray> at_edges, at_corners;
+  for (const Vec3& corner : mesh.positions) at_corners.push_back({{}, 0, corner, INFINITY});
   for (const auto& t : mesh.triangles)
-    rays.push_back({{}, 0, mesh.positions[t[0]] + mesh.positions[t[1]], INFINITY});
+    at_edges.push_back({{}, 0, mesh.positions[t[0]] + mesh.positions[t[1]], INFINITY});
   for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}})
-    rays.push_back({{}, 0, axis, INFINITY});
+    at_edges.push_back({{}, 0, axis, INFINITY});
   DeviceRayTracer tracer = built(scene);
-  for (const Hit& hit : hits_of(tracer, rays)) {
+  for (const Hit& hit : hits_of(tracer, at_edges)) {
     EXPECT_TRUE(hit.found());
     EXPECT_FALSE(hit.back_face);
   }
+  size_t missed = 0;
+  for (const Hit& hit : hits_of(tracer, at_corners)) {
+    missed += !hit.found();
+    EXPECT_FALSE(hit.back_face);
+  }
+  EXPECT_LE(missed, GetParam() == HierarchyKind::driver ? at_corners.size() / 20 : 0);
 }
 
 // A quad that stands mirrored, a sheet with two sides, and ends of rays, as in RayTracer's own
@@ -324,11 +336,10 @@ TEST_P(DeviceRays, PassSharedSurfacesByTheSameChance) {
   EXPECT_LE(others, 10u);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothHierarchies, DeviceRays,
-                         ::testing::Values(HierarchyKind::binary, HierarchyKind::wide),
-                         [](const auto& kind) {
-                           return kind.param == HierarchyKind::wide ? "wide" : "binary";
-                         });
+INSTANTIATE_TEST_SUITE_P(AllHierarchies, DeviceRays,
+                         ::testing::Values(HierarchyKind::binary, HierarchyKind::wide,
+                                           HierarchyKind::driver),
+                         [](const auto& kind) { return std::string(name_of(kind.param)); });
 
 }  // namespace
 }  // namespace luxel::trace

@@ -60,12 +60,13 @@ Ray ray_at(Vectors rays, uint i) {
   return Ray(a.xyz, b.xyz, a.w, b.w);
 }
 
-// 1 / direction, finite: a component of no size becomes a tiny one, which moves the ray by less than
-// any rounding.
-vec3 reciprocal(vec3 direction) {
+// A component of no size becomes a tiny one, which moves the ray by less than any rounding.
+vec3 without_zeros(vec3 direction) {
   vec3 tiny = mix(vec3(1e-20), vec3(-1e-20), lessThan(direction, vec3(0)));
-  return 1 / mix(direction, tiny, lessThan(abs(direction), vec3(1e-20)));
+  return mix(direction, tiny, lessThan(abs(direction), vec3(1e-20)));
 }
+// 1 / direction, finite.
+vec3 reciprocal(vec3 direction) { return 1 / without_zeros(direction); }
 
 // Twice the signed volume of the ray and the edge from p to q, both seen from the origin. Seen from
 // the triangle on the other side of the edge it is the same number with the other sign, for sums

@@ -2,6 +2,9 @@
 // viewpoint, its threads one pixel after the other; neighbours in the list of pixels look in similar
 // directions. Shares are whole numbers, whose sum is the same in any order. ../device_look.cpp has
 // the structs.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "surroundings.glsl"
 
 const uint kThreads = 128;

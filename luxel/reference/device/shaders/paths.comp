@@ -1,5 +1,8 @@
 // The estimator of luxel/reference/paths.h: a thread follows paths of one receiver or pixel one after
 // the other, with the random numbers that they have on the processor.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "luxel/scene/both_environment.h"
 #include "luxel/base/both_triangle.h"
 #include "world_of_paths.glsl"

@@ -1,6 +1,9 @@
 // Makes the rays of elements, traces them, and stores where they land. A work group has one cell of
 // directions of 64 slots, whose rays are alike: its threads each take a slot, and its rays of that
 // cell. ../landed_rays.cpp has the structs.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "landings.glsl"
 #include "slot_rays.glsl"
 layout(local_size_x = 64) in;

@@ -1,5 +1,8 @@
 // What the rays of a camera's samples meet first, when the backs of one-sided surfaces are
 // invisible: trace::visible_hits().
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "world_of_paths.glsl"
 #include "camera.glsl"
 layout(local_size_x = 64) in;

@@ -1,4 +1,7 @@
 // Light of punctual lights that move: a shadow ray per place and light, as matrix::live_light().
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "luxel/light/both_punctual_light.h"
 #include "luxel/trace/vulkan/shaders/frame.glsl"
 layout(local_size_x = 64) in;

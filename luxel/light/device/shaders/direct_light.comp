@@ -1,7 +1,10 @@
 // Light straight from its sources: luxel/light/direct_light.h. A thread takes a place, and its shadow
 // rays one after the other. Each kind of source is a step of its own, which adds to what those before
 // it have found: so a shader traces in one place only, and is compiled soon.
+#version 460
+#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : enable
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "luxel/base/both_directions.h"
 #include "lights.glsl"
 #include "shadow_rays.glsl"

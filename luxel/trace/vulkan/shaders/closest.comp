@@ -1,4 +1,7 @@
 // What each ray meets first.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "hierarchy.glsl"
 layout(local_size_x = 64) in;
 
 layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };

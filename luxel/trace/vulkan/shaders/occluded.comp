@@ -1,4 +1,7 @@
 // Whether anything lies on each ray.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "hierarchy.glsl"
 layout(local_size_x = 64) in;
 
 layout(buffer_reference, scalar) writeonly buffer Blocked { uint at[]; };

@@ -1,5 +1,8 @@
 // Makes the rays of elements and traces them. A work group has one cell of directions of 64
 // elements, whose rays are alike: its threads each take an element, and its rays of that cell.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "element_rays.glsl"
 layout(local_size_x = 64) in;
 

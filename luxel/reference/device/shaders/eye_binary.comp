@@ -1,5 +1,0 @@
-// What a camera's rays meet first, by a binary hierarchy.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#include "luxel/trace/vulkan/shaders/binary.glsl"
-#include "eye.glsl"

@@ -1,5 +1,0 @@
-// What a camera's rays meet first, by a wide hierarchy.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#include "luxel/trace/vulkan/shaders/wide.glsl"
-#include "eye.glsl"

@@ -1,5 +1,0 @@
-// What the rays of elements meet first, by a wide hierarchy.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#include "luxel/trace/vulkan/shaders/wide.glsl"
-#include "first_hits.glsl"

@@ -1,5 +1,0 @@
-// Light of punctual lights that move, by a wide hierarchy.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#include "luxel/trace/vulkan/shaders/wide.glsl"
-#include "relight_direct.glsl"

@@ -20,7 +20,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs build test test-all demo docs bench asan tsan fuzz format format-check clean
+.PHONY: setup setup-tests setup-docs build test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -41,6 +41,14 @@ test: setup-tests
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $$(nproc) --label-exclude thorough --output-junit tests.xml
+
+# Rays by ray queries, which lavapipe knows from Mesa 24.1 on: on that of Debian's backports, where
+# there is one. After `make test`.
+ray-queries:
+	tools/newer_lavapipe.sh build/lavapipe
+	export VK_ICD_FILENAMES=$$(ls $(CURDIR)/build/lavapipe/lavapipe.json 2>/dev/null); \
+	  [[ -n $$VK_ICD_FILENAMES ]] || unset VK_ICD_FILENAMES; \
+	  ctest --preset release --parallel $$(nproc) -R '/driver|RayQueries|HierarchiesOnDevice|FirstHitsOnDevice'
 
 test-all: setup-tests
 	cmake --preset release

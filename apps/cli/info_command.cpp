@@ -71,7 +71,10 @@ int run_devices(const InfoOptions& options) {
     nlohmann::json json{{"devices", nlohmann::json::array()}};
     if (!devices) json["reason"] = devices.error().message;
     for (const gpu::DeviceInfo& d : devices.value_or(std::vector<gpu::DeviceInfo>{}))
-      json["devices"].push_back({{"name", d.name}, {"kind", kind_of(d.type)}, {"lacks", d.lacks}});
+      json["devices"].push_back({{"name", d.name},
+                                 {"kind", kind_of(d.type)},
+                                 {"lacks", d.lacks},
+                                 {"ray_queries", d.has_ray_queries}});
     std::printf("%s\n", json.dump(2).c_str());
     return kDone;
   }
@@ -87,7 +90,8 @@ int run_devices(const InfoOptions& options) {
                                       "draws on it",
                                       i)
                                 : "; luxel cannot use it, for it lacks " + d.lacks;
-    std::printf("%s: %s%s\n", d.name.c_str(), kind_of(d.type), use.c_str());
+    std::printf("%s: %s%s%s\n", d.name.c_str(), kind_of(d.type),
+                d.has_ray_queries ? ", with ray queries" : "", use.c_str());
   }
   return kDone;
 }

@@ -206,9 +206,9 @@ Result<std::vector<Candidate>> candidates(VkInstance instance) {
   for (const VkPhysicalDevice device : devices) {
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(device, &properties);
-    out.push_back(
-        {device,
-         {properties.deviceName, properties.deviceType, what_it_lacks(device, properties)}});
+    out.push_back({device,
+                   {properties.deviceName, properties.deviceType, what_it_lacks(device, properties),
+                    knows_ray_queries(device)}});
   }
   std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
     return rank(a.info.type) < rank(b.info.type);

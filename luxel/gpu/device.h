@@ -35,6 +35,7 @@ struct DeviceInfo {
   std::string name;
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   std::string lacks;  ///< what luxel needs and it has not; empty: luxel can use it
+  bool has_ray_queries = false;
 };
 
 /// The devices of this machine, fastest kind first: discrete, integrated, virtual, the processor.

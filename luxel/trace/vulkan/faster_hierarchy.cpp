@@ -21,8 +21,8 @@ scene::Scene scene_of_spheres() {
   return scene;
 }
 
-std::vector<Ray> rays_between_spheres() {
-  std::vector<Ray> rays(size_t(1) << 18);
+std::vector<Ray> rays_between_spheres(size_t count) {
+  std::vector<Ray> rays(count);
   RandomStream random{2};
   for (Ray& ray : rays)
     ray = {uniform_sphere_sample(random.next2()) * (0.9f * random.next()), 0,
@@ -36,9 +36,9 @@ HierarchyKind own_hierarchy(const gpu::Device& device) {
   return device.type == VK_PHYSICAL_DEVICE_TYPE_CPU ? HierarchyKind::wide : HierarchyKind::binary;
 }
 
-Result<std::vector<HierarchyRate>> measure_hierarchies(const gpu::Device& device) {
+Result<std::vector<HierarchyRate>> measure_hierarchies(const gpu::Device& device, size_t count) {
   const scene::Scene scene = scene_of_spheres();
-  const std::vector<Ray> rays = rays_between_spheres();
+  const std::vector<Ray> rays = rays_between_spheres(count);
   std::vector<HierarchyKind> kinds{own_hierarchy(device)};
   if (device.has_ray_queries) kinds.push_back(HierarchyKind::driver);
   std::vector<HierarchyRate> out;
@@ -68,7 +68,9 @@ HierarchyKind faster_of(const std::vector<HierarchyRate>& measured) {
 Result<HierarchyKind> faster_hierarchy(const gpu::Device& device) {
   if (!device.has_ray_queries || device.type == VK_PHYSICAL_DEVICE_TYPE_CPU)
     return own_hierarchy(device);
-  LUXEL_TRY(const std::vector<HierarchyRate> measured, measure_hierarchies(device));
+  // As many as fill a large GPU.
+  constexpr size_t kRays = size_t(1) << 18;
+  LUXEL_TRY(const std::vector<HierarchyRate> measured, measure_hierarchies(device, kRays));
   return faster_of(measured);
 }
 

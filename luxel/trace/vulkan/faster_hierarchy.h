@@ -15,9 +15,9 @@ struct HierarchyRate {
   HierarchyKind kind;
   double rays_per_s;
 };
-/// The device's own hierarchy and, where it has ray queries, the driver's, in a scene of 82,000
-/// triangles. A tenth of a second. Errors: no memory, the device is lost.
-Result<std::vector<HierarchyRate>> measure_hierarchies(const gpu::Device& device);
+/// own_hierarchy() and, where the device has ray queries, the driver's, by so many rays in a scene
+/// of 82,000 triangles. Errors: no memory, the device is lost.
+Result<std::vector<HierarchyRate>> measure_hierarchies(const gpu::Device& device, size_t rays);
 
 /// The kind for scenes on this device. The driver's is taken where it has been measured now to be
 /// clearly faster, and never where a processor plays the device. Errors: no memory, the device is

@@ -18,7 +18,7 @@ TEST(FasterHierarchy, IsTheDriversOnlyWhereThatIsClearlyFaster) {
 using HierarchiesOnDevice = gpu::testing::OnDevice;
 
 TEST_F(HierarchiesOnDevice, AreMeasured) {
-  const auto measured = measure_hierarchies(*device_);
+  const auto measured = measure_hierarchies(*device_, 1000);
   ASSERT_TRUE(measured) << measured.error().message;
   ASSERT_EQ(measured->size(), device_->has_ray_queries ? 2u : 1u);
   EXPECT_EQ(measured->front().kind, own_hierarchy(*device_));

@@ -77,36 +77,36 @@ Status add_bake(const std::string& what, scene::Scene scene, int resolution,
 }
 
 /// [Moreno05, table 5.1]: 200 direct and 800 indirect samples.
-Status add_paper(bool is_quick, gather::RayDevice& device, Table& table) {
+Status add_paper(bool is_card, gather::RayDevice& device, Table& table) {
   gather::GatherParams params;
-  params.direct_samples = is_quick ? 200 : 20, params.samples = is_quick ? 800 : 80;
+  params.direct_samples = is_card ? 200 : 20, params.samples = is_card ? 800 : 80;
   return add_bake(
       fmt::format("Cornell box, {} + {} samples", params.direct_samples, params.samples),
-      scene::cornell_box(), is_quick ? 512 : kFewTexels, params, device, table);
+      scene::cornell_box(), is_card ? 512 : kFewTexels, params, device, table);
 }
 
-Status add_errors(const std::filesystem::path& shared, bool is_quick, gather::RayDevice& device,
+Status add_errors(const std::filesystem::path& shared, bool is_card, gather::RayDevice& device,
                   Table& table) {
   gather::GatherParams params;
   params.samples = 64, params.direct_samples = 64, params.supersample = 16;
   params.max_error = float(kAskedError), params.error_measure = gather::ErrorMeasure::rms;
-  const size_t count = is_quick ? kErrorScenes.size() : kFewScenes;
+  const size_t count = is_card ? kErrorScenes.size() : kFewScenes;
   for (const std::filesystem::path file : std::span(kErrorScenes).first(count)) {
     const NamedScene named{file.stem().string(), shared / "scenes" / file};
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     LUXEL_TRY_STATUS(add_bake(
         fmt::format("{} to an RMS error of {:.0f} %", named.name, 100 * kAskedError),
-        std::move(scene), is_quick ? kErrorResolution : kFewTexels, params, device, table));
+        std::move(scene), is_card ? kErrorResolution : kFewTexels, params, device, table));
   }
   return {};
 }
 
-Status add_growth(bool is_quick, gather::RayDevice& device, Table& table) {
+Status add_growth(bool is_card, gather::RayDevice& device, Table& table) {
   gather::GatherParams params;
   params.samples = params.direct_samples = kGrowingSamples;
   for (const int side : kGrowingSides) {
-    if (!is_quick && side > kGrowingSides.front()) break;
+    if (!is_card && side > kGrowingSides.front()) break;
     LUXEL_TRY_STATUS(
         add_bake(fmt::format("Cornell box, {0} x {0}, {1} samples", side, kGrowingSamples),
                  scene::cornell_box(), side, params, device, table));
@@ -125,10 +125,10 @@ Result<Table> measure_gpu_bake(const std::filesystem::path& shared, int threads)
   table.notes.push_back("device: " + device->name);
   const auto rays = device::gather_device(*device);
   // Less of it where a processor plays the device.
-  const bool is_quick = device->type != VK_PHYSICAL_DEVICE_TYPE_CPU;
-  LUXEL_TRY_STATUS(add_paper(is_quick, *rays, table));
-  LUXEL_TRY_STATUS(add_errors(shared, is_quick, *rays, table));
-  LUXEL_TRY_STATUS(add_growth(is_quick, *rays, table));
+  const bool is_card = device->type != VK_PHYSICAL_DEVICE_TYPE_CPU;
+  LUXEL_TRY_STATUS(add_paper(is_card, *rays, table));
+  LUXEL_TRY_STATUS(add_errors(shared, is_card, *rays, table));
+  LUXEL_TRY_STATUS(add_growth(is_card, *rays, table));
   return table;
 }
 

@@ -86,10 +86,10 @@ Result<Table> measure_gpu_growth(const std::filesystem::path&, int threads) {
   LUXEL_TRY(const auto device, gpu::Device::open({}));
   table.notes.push_back("device: " + device->name);
   // Less of it where a processor plays the device.
-  const bool is_quick = device->type != VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const bool is_card = device->type != VK_PHYSICAL_DEVICE_TYPE_CPU;
   for (const int levels : {6, 8, 10})
-    if (is_quick || levels == 6) LUXEL_TRY_STATUS(add_scene(spheres(levels, 1), *device, table));
-  LUXEL_TRY_STATUS(add_scene(spheres(is_quick ? 8 : 6, 16), *device, table));
+    if (is_card || levels == 6) LUXEL_TRY_STATUS(add_scene(spheres(levels, 1), *device, table));
+  LUXEL_TRY_STATUS(add_scene(spheres(is_card ? 8 : 6, 16), *device, table));
   return table;
 }
 

@@ -1,6 +1,6 @@
-#include <array>
 #include <cstdio>
 
+#include "apps/cli/bake_summary.h"
 #include "apps/cli/cli.h"
 #include "apps/cli/device_option.h"
 #include "luxel/arguments/bake_options.h"
@@ -19,41 +19,16 @@ struct BakeOptions {
   std::string device = "cpu";
 };
 
-/// How far the light is off, as far as the solver knows, and where most.
-std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
-  const double rms = json["relative_error"].get<double>();
-  if (rms <= 0) return {};
-  const std::string text = fmt::format("estimated error{}: RMS {:.3g} % of the mean light",
-                                       settings.denoise ? " before the denoiser" : "", 100 * rms);
-  if (!json.contains("error")) return text;
-  const auto& error = json["error"];
-  const auto& worst = error["worst"];
-  const auto at = worst["position"].get<std::array<double, 3>>();
-  return text + fmt::format(
-                    "; 95 % of texels err by less than {:.3g} %; largest standard error {:.3g} % "
-                    "on '{}' at {:.4g}, {:.4g}, {:.4g}",
-                    100 * error["relative_p95"].get<double>(),
-                    100 * worst["relative"].get<double>(), worst["node"].get<std::string>(), at[0],
-                    at[1], at[2]);
-}
-
-void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
-  const auto& counts = json["counts"];
-  const size_t pages = json["atlas"]["pages"].size();
+void print_part(const nlohmann::json& part) {
+  const int number = part["number"].get<int>(), of = part["of"].get<int>();
+  const auto file = part["file"].get<std::string>();
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s{}",
-                  counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
-                  pages == 1 ? "" : fmt::format("{} pages of up to ", pages),
-                  json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
-                  counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
-                  json["seconds"]["total"].get<double>(),
-                  json["device"] == "cpu" ? "" : ", with " + json["device"].get<std::string>())
+      fmt::format("part {} of {}: {} pieces of work were added to {}; the next stages need {} of "
+                  "other parts; luxel merge ends the bake",
+                  number, of, part["parts_kept"].get<uint64_t>(), file,
+                  part["parts_left"].get<uint64_t>())
           .c_str());
-  if (const std::string error = error_text(settings, json); !error.empty())
-    std::fprintf(stderr, "%s\n", error.c_str());
-  for (const nlohmann::json& name : json["files"])
-    std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());
 }
 
 void print_plan(const nlohmann::json& json) {
@@ -90,7 +65,9 @@ int run_bake(const BakeOptions& options) {
   return run_and_print(
       options.common,
       [&](Progress& progress) { return pipeline::bake(*settings, progress, for_bake); },
-      [&](const nlohmann::json& json) { print_summary(*settings, json); });
+      [&](const nlohmann::json& json) {
+        settings->part.is_all() ? print_bake(*settings, json) : print_part(json["part"]);
+      });
 }
 
 }  // namespace

@@ -80,6 +80,7 @@ void register_info(CLI::App& app, Action& action);
 void register_probe(CLI::App& app, Action& action);
 void register_lux(CLI::App& app, Action& action);
 void register_bake(CLI::App& app, Action& action);
+void register_merge(CLI::App& app, Action& action);
 void register_render(CLI::App& app, Action& action);
 void register_compare(CLI::App& app, Action& action);
 void register_factors(CLI::App& app, Action& action);

@@ -59,6 +59,8 @@ std::string_view name_of(ErrorCode code) {
       return "out_of_time";
     case ErrorCode::no_device:
       return "no_device";
+    case ErrorCode::parts_missing:
+      return "parts_missing";
     case ErrorCode::cancelled:
       return "cancelled";
   }

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   Action action;
   register_bake(app, action);
+  register_merge(app, action);
   register_render(app, action);
   register_compare(app, action);
   register_info(app, action);

@@ -14,8 +14,12 @@ Clock::duration seconds(double s) {
 
 }  // namespace
 
-PartStore::PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found)
-    : params_(std::move(params)), progress_(progress), file_(std::move(found)) {
+PartStore::PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found,
+                     std::vector<RecordFile> others)
+    : params_(std::move(params)),
+      progress_(progress),
+      file_(std::move(found)),
+      others_(std::move(others)) {
   has_file_ = file_.has_value();
   if (has_file_) progress_.set_way_on(params_.way_on);
   flush_at_ = (params_.start + seconds(params_.interval_s)).time_since_epoch().count();
@@ -37,6 +41,11 @@ bool PartStore::keep(RecordKey part, std::span<const std::byte> bytes) {
   ++kept_;
   flush_now_and_then();
   return true;
+}
+
+Status PartStore::begin() {
+  if (make_file()) return {};
+  return fail(ErrorCode::io, "{}", failure());
 }
 
 bool PartStore::make_file() {
@@ -74,18 +83,32 @@ void PartStore::flush_now_and_then() {
   if (flush_at_.compare_exchange_strong(due, next)) file_->flush();
 }
 
+/// Null: none has it.
+const RecordFile* PartStore::file_with(RecordKey part) const {
+  if (has_file_ && file_->size_of(part)) return &*file_;
+  for (const RecordFile& other : others_)
+    if (other.size_of(part)) return &other;
+  return nullptr;
+}
+
 std::optional<std::vector<std::byte>> PartStore::find(RecordKey part) const {
-  if (!has_file_) return std::nullopt;
-  const std::optional<uint64_t> size = file_->size_of(part);
-  if (!size) return std::nullopt;
-  std::vector<std::byte> bytes(*size);
-  if (!file_->read(part, 0, bytes)) return std::nullopt;
+  const RecordFile* file = file_with(part);
+  if (!file) return std::nullopt;
+  std::vector<std::byte> bytes(*file->size_of(part));
+  if (!file->read(part, 0, bytes)) return std::nullopt;
   ++found_;
   return bytes;
 }
 
+bool PartStore::leaves(RecordKey part) const {
+  if (params_.share.has(part.part)) return false;
+  ++left_;
+  return true;
+}
+
 bool PartStore::read(RecordKey part, uint64_t offset, std::span<std::byte> out) const {
-  return has_file_ && file_->read(part, offset, out);
+  const RecordFile* file = file_with(part);
+  return file && file->read(part, offset, out);
 }
 
 }  // namespace base

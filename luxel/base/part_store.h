@@ -17,6 +17,13 @@
 namespace luxel {
 inline namespace base {
 
+/// Which parts a process works on, where several share a stage's parts out among themselves.
+struct PartShare {
+  uint32_t number = 0, of = 1;  ///< every `of`-th part, from `number` on
+
+  bool has(uint64_t part) const { return part % of == number; }
+};
+
 struct PartStoreParams {
   std::filesystem::path file;
   std::string header;  ///< of a file that is made
@@ -26,6 +33,7 @@ struct PartStoreParams {
   /// often everything is flushed to the disk, too. 0: nothing is ever added.
   double interval_s = 30;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  PartShare share{};
 };
 
 /// Parts are found again by what they were made from: a stage is the digest of its name and of
@@ -36,17 +44,24 @@ struct PartStoreParams {
 /// and `progress` gets a note. Thread-safe.
 class PartStore {
  public:
-  /// With `found`, a file to go on with, parts are kept from the start on. `progress` outlives
-  /// this.
-  PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found = {});
+  /// With `found`, a file to go on with, parts are kept from the start on. Parts are found in
+  /// `others`, too, which stay as they are. `progress` outlives this.
+  PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found = {},
+            std::vector<RecordFile> others = {});
   PartStore(const PartStore&) = delete;
   PartStore& operator=(const PartStore&) = delete;
 
   /// Whether keep() would keep a part now: without that it need not be put together.
   bool wants() const;
+  /// Makes the file, which otherwise the first part to be kept does. Errors: it cannot be written.
+  Status begin();
   /// Returns whether it was kept.
   bool keep(RecordKey part, std::span<const std::byte> bytes);
   std::optional<std::vector<std::byte>> find(RecordKey part) const;
+  /// Whether a part that was not found is left to others: it is not of the share. Counts it.
+  bool leaves(RecordKey part) const;
+  uint64_t parts_left() const { return left_; }
+  bool shares() const { return params_.share.of > 1; }
   /// Bytes of a part that was kept or found, from an offset on. False when the disk fails.
   bool read(RecordKey part, uint64_t offset, std::span<std::byte> out) const;
 
@@ -59,6 +74,7 @@ class PartStore {
 
  private:
   using Clock = std::chrono::steady_clock;
+  const RecordFile* file_with(RecordKey part) const;
   bool make_file();
   void fail_locked(const Error& error);
   void flush_now_and_then();
@@ -67,10 +83,11 @@ class PartStore {
   Progress& progress_;
   mutable std::mutex mutex_;
   std::optional<RecordFile> file_;  ///< made under the mutex, never taken away
+  std::vector<RecordFile> others_;
   std::atomic<bool> has_file_{false}, failed_{false};
   std::string failure_;
   std::atomic<Clock::rep> flush_at_{0};
-  mutable std::atomic<uint64_t> found_{0};
+  mutable std::atomic<uint64_t> found_{0}, left_{0};
   std::atomic<uint64_t> kept_{0};
 };
 
@@ -86,6 +103,7 @@ struct KeptStage {
   std::optional<std::vector<std::byte>> find(uint64_t part) const {
     return store == nullptr ? std::nullopt : store->find({stage, part});
   }
+  bool leaves(uint64_t part) const { return store != nullptr && store->leaves({stage, part}); }
 };
 
 }  // namespace base

@@ -118,13 +118,22 @@ Result<RecordFile> RecordFile::create(const std::filesystem::path& path, std::st
 }
 
 Result<RecordFile> RecordFile::open(const std::filesystem::path& path, Check check) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  return open(path, O_RDWR, check);
+}
+
+Result<RecordFile> RecordFile::open_to_read(const std::filesystem::path& path, Check check) {
+  return open(path, O_RDONLY, check);
+}
+
+Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags, Check check) {
+  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
   if (file < 0) return io_error("open", path, errno);
   RecordFile out(path, file);
   struct stat about {};
   if (::fstat(file, &about) != 0) return io_error("open", path, errno);
   LUXEL_TRY_STATUS(out.read_header(uint64_t(about.st_size)));
   LUXEL_TRY_STATUS(out.read_records(uint64_t(about.st_size), check));
+  if (flags == O_RDWR) LUXEL_TRY_STATUS(out.cut_off(uint64_t(about.st_size)));
   return out;
 }
 
@@ -170,7 +179,11 @@ Status RecordFile::read_records(uint64_t file_bytes, Check check) {
     positions_[start.key] = {data, start.bytes, start.bytes_digest};
     end_ = data + start.bytes;
   }
-  // What is left of a record must not stand behind a shorter one.
+  return {};
+}
+
+/// What is left of a record must not stand behind a shorter one.
+Status RecordFile::cut_off(uint64_t file_bytes) {
   if (end_ < file_bytes && ::ftruncate(file_, off_t(end_)) != 0)
     return io_error("write", path_, errno);
   return {};

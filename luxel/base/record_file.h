@@ -44,6 +44,10 @@ class RecordFile {
   /// A cut-off record at the file's end is taken away. Errors: no such file, none of this kind,
   /// damaged: the sentence names the byte.
   static Result<RecordFile> open(const std::filesystem::path& path, Check check = Check::now);
+  /// One that others may be writing: as far as it goes now, and left as it is. Nothing is appended
+  /// to it. Errors: as open().
+  static Result<RecordFile> open_to_read(const std::filesystem::path& path,
+                                         Check check = Check::now);
   RecordFile(RecordFile&& other) noexcept;
   RecordFile& operator=(RecordFile&& other) noexcept;
   ~RecordFile();
@@ -75,8 +79,10 @@ class RecordFile {
     uint64_t offset = 0, bytes = 0, digest = 0;
   };
   RecordFile(std::filesystem::path path, int file);
+  static Result<RecordFile> open(const std::filesystem::path& path, int flags, Check check);
   Status read_header(uint64_t file_bytes);
   Status read_records(uint64_t file_bytes, Check check);
+  Status cut_off(uint64_t file_bytes);
   std::optional<RecordPosition> position_of(RecordKey key) const;
 
   std::filesystem::path path_;

@@ -20,6 +20,7 @@ enum class ErrorCode {
   out_of_disk,    ///< the disk is full
   out_of_time,    ///< a stated time limit is too short
   no_device,      ///< a graphics device or a display is missing, or is lost
+  parts_missing,  ///< what follows needs parts that other processes work on
   cancelled,      ///< the user stopped the work
 };
 

@@ -266,6 +266,7 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
       rays += *found;
       return progress.skip(end - begin);
     }
+    if (kept.leaves(begin / kPartElements)) return progress.skip(end - begin);
     // One receiver after the other: its light, the variance of it, and the share of each layer.
     ShadowRayBatch batch;
     uint64_t traced = 0;

@@ -242,6 +242,7 @@ Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
       rays += *found;
       return progress.skip(end - begin);
     }
+    if (kept.leaves(part)) return progress.skip(end - begin);
     PointBuffers work;
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {

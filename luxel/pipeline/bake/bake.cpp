@@ -2,13 +2,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/check.h"
 #include "luxel/base/file.h"
+#include "luxel/base/file_lock.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/bake/bake_files.h"
 #include "luxel/pipeline/bake/bake_report.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/reuse/bake_parts.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/solver/bake_options.h"
 
@@ -52,12 +55,41 @@ Result<FinishedFiles> finished_files(const BakeSettings& settings, const Bake& b
   return out;
 }
 
+/// `luxel bake --part`.
+Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progress,
+                                 const BakeDevice* device) {
+  if (device)
+    return fail(ErrorCode::bad_setting, "--part {}/{} is the processor's work; leave --device out",
+                settings.part.number, settings.part.of);
+  const std::filesystem::path file = parts_file(settings);
+  OutputFolder folder(settings.output);
+  LUXEL_TRY_STATUS(folder.make());
+  LUXEL_TRY(const FileLock lock, FileLock::take(file.string() + ".lock", file.string()));
+  Checkpoint checkpoint(settings, settings_of_checkpoint(settings));
+  const Result<Bake> ended = bake_scene(settings, progress, {.checkpoint = &checkpoint});
+  const PartStore* parts = checkpoint.parts();
+  if (parts != nullptr && parts->has_failed())
+    return fail(ErrorCode::out_of_disk, "{}", parts->failure());
+  // The last stages are left to `luxel merge` in any case.
+  LUXEL_CHECK(!ended);
+  if (ended.error().code != ErrorCode::parts_missing) return tl::unexpected(ended.error());
+  folder.keep();
+  return nlohmann::json{{"part",
+                         {{"number", settings.part.number},
+                          {"of", settings.part.of},
+                          {"file", file.string()},
+                          {"parts_kept", parts->parts_kept()},
+                          {"parts_found", parts->parts_found()},
+                          {"parts_left", parts->parts_left()}}}};
+}
+
 }  // namespace
 
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
                             const BakeDevice* device) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
+  if (!settings.part.is_all()) return bake_part(settings, progress, device);
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings));

@@ -17,7 +17,8 @@ struct BakeDevice;
 /// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
 /// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to
 /// its end leaves its checkpoint, nothing else; one that does leaves DIR/cache with settings.keep.
-/// A bake on a `device` keeps nothing in a checkpoint; null: the processor's.
+/// A bake on a `device` keeps nothing in a checkpoint; null: the processor's. A part of a bake
+/// (settings.part) leaves the file of that part alone, and returns {"part": ...} about it.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
                             const BakeDevice* device = nullptr);
 

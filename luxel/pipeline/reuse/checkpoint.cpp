@@ -1,11 +1,14 @@
 #include "luxel/pipeline/reuse/checkpoint.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "luxel/pipeline/reuse/bake_parts.h"
 #include "luxel/pipeline/settings/version.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/scene/digest.h"
 
 namespace luxel::pipeline {
@@ -16,7 +19,7 @@ using nlohmann::json;
 
 /// The version of the records' content; goes up when what a part holds, or how it is computed,
 /// changes.
-constexpr int kCheckpointFormat = 3;
+constexpr int kCheckpointFormat = 4;
 
 json digests_json(std::span<const scene::ItemDigest> items) {
   json out = json::array();
@@ -59,10 +62,6 @@ std::string version_of(const json& header) {
 
 }  // namespace
 
-fs::path checkpoint_file(const BakeSettings& settings) {
-  return settings.output / "checkpoint.luxel";
-}
-
 json bake_identity(const json& settings) {
   return {{"luxel", kVersion}, {"format", kCheckpointFormat}, {"settings", settings}};
 }
@@ -85,6 +84,15 @@ std::string difference(const json& there, const json& here) {
   }
 }
 
+namespace {
+
+/// What differs between a file's header and the bake's; empty: nothing.
+std::string difference_of(const RecordFile& file, const std::string& header) {
+  return difference(json::parse(file.header(), nullptr, false), json::parse(header));
+}
+
+}  // namespace
+
 Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity)
     : settings_(settings),
       identity_(std::make_unique<json>(identity)),
@@ -92,38 +100,66 @@ Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity)
 
 Checkpoint::~Checkpoint() = default;
 
-Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
-  if (settings_.keep) return {};
-  const fs::path file = checkpoint_file(settings_);
-  // Names of things may be no UTF-8, which JSON knows nothing else of.
-  const std::string header =
-      checkpoint_header(*identity_, scene).dump(-1, ' ', false, json::error_handler_t::replace);
-  std::optional<RecordFile> found;
+/// The bake's own file as it was left; nothing where the bake begins anew.
+Result<std::optional<RecordFile>> Checkpoint::own_file(const std::string& header,
+                                                       Progress& progress) {
+  const fs::path file = parts_file(settings_);
+  const bool is_part = !settings_.part.is_all(), goes_on = settings_.resume || is_part;
   std::error_code ignored;
   const bool there = fs::exists(file, ignored);
-  if (there && settings_.resume) {
+  std::optional<RecordFile> found;
+  if (there && goes_on) {
     LUXEL_TRY(found, RecordFile::open(file));
-    const std::string different =
-        difference(json::parse(found->header(), nullptr, false), json::parse(header));
-    if (!different.empty())
+    if (const std::string different = difference_of(*found, header); !different.empty())
       return fail(ErrorCode::bad_setting,
-                  "{} is of another bake: {}; leave --resume out to start from the beginning",
-                  file.string(), different);
+                  "{} is of another bake: {}; {} to start from the beginning", file.string(),
+                  different, is_part ? "remove it" : "leave --resume out");
     resumed_ = true;
   } else if (there) {
     note_ = fmt::format(
         "{} is of a bake that did not end; this one starts from the beginning, --resume would go "
         "on with it",
         file.string());
-  } else if (settings_.resume) {
+  } else if (settings_.resume && !is_part) {
     note_ = fmt::format("there is no {} to resume from; the bake starts from the beginning",
                         file.string());
   }
   if (!note_.empty()) progress.note(note_);
-  parts_.emplace(PartStoreParams{file, header, "--resume goes on from " + file.string(),
-                                 settings_.checkpoint_s, start_},
-                 progress, std::move(found));
-  return {};
+  return found;
+}
+
+/// The files of other_parts().
+Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& header) const {
+  std::vector<RecordFile> out;
+  for (const fs::path& file : other_parts(settings_)) {
+    LUXEL_TRY(RecordFile other, RecordFile::open_to_read(file));
+    if (const std::string different = difference_of(other, header); !different.empty())
+      return fail(ErrorCode::bad_setting, "{} is of another bake: {}", file.string(), different);
+    out.push_back(std::move(other));
+  }
+  return out;
+}
+
+Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
+  if (settings_.keep) return {};
+  json described = checkpoint_header(*identity_, scene);
+  described["bake"] = to_json(settings_);
+  // Names of things may be no UTF-8, which JSON knows nothing else of.
+  const std::string header = described.dump(-1, ' ', false, json::error_handler_t::replace);
+  LUXEL_TRY(std::optional<RecordFile> found, own_file(header, progress));
+  LUXEL_TRY(std::vector<RecordFile> others, other_files(header));
+  PartStoreParams params{parts_file(settings_), header,
+                         "--resume goes on from " + parts_file(settings_).string(),
+                         settings_.checkpoint_s, start_};
+  if (!settings_.part.is_all()) {
+    params.way_on = "the same command goes on from " + params.file.string();
+    params.share = {uint32_t(settings_.part.number - 1), uint32_t(settings_.part.of)};
+    params.interval_s = std::max(params.interval_s, 1.0);
+    params.start -= std::chrono::seconds(size_t(params.interval_s) + 1);  // from now on
+  }
+  parts_.emplace(std::move(params), progress, std::move(found), std::move(others));
+  // Whoever collects the files of all parts looks for one that has none, too.
+  return settings_.part.is_all() ? Status() : parts_->begin();
 }
 
 json Checkpoint::about() const {
@@ -137,14 +173,14 @@ json Checkpoint::about() const {
 
 bool Checkpoint::has_file() const {
   std::error_code ignored;
-  return parts_ && fs::exists(checkpoint_file(settings_), ignored);
+  return parts_ && fs::exists(parts_file(settings_), ignored);
 }
 
 void Checkpoint::remove() {
   if (!parts_) return;
   parts_.reset();
   std::error_code ignored;
-  const fs::path file = checkpoint_file(settings_);
+  const fs::path file = parts_file(settings_);
   fs::remove(file, ignored), fs::remove(RecordFile::unfinished_name(file), ignored);
 }
 

@@ -15,9 +15,6 @@
 
 namespace luxel::pipeline {
 
-/// DIR/checkpoint.luxel.
-std::filesystem::path checkpoint_file(const BakeSettings& settings);
-
 /// What the light of a bake depends on besides its scene: luxel's version and `settings`, those
 /// that change it (solver/bake_options.h says which).
 nlohmann::json bake_identity(const nlohmann::json& settings);
@@ -35,8 +32,9 @@ class Checkpoint {
   ~Checkpoint();
 
   /// The scene is known, with its outside light. With settings.resume goes on with the file that is
-  /// there; says in a note when there is none, or one that is not gone on with. Errors: it is of
-  /// another bake, or damaged.
+  /// there; says in a note when there is none, or one that is not gone on with. A part of a bake
+  /// always goes on with its file, and everything is kept. What is in other_parts() is found, too.
+  /// Errors: a file is of another bake, or damaged.
   Status open(const scene::Scene& scene, Progress& progress);
   /// Null before open(), and where nothing is kept.
   PartStore* parts() { return parts_ ? &*parts_ : nullptr; }
@@ -48,6 +46,9 @@ class Checkpoint {
   void remove();
 
  private:
+  Result<std::optional<RecordFile>> own_file(const std::string& header, Progress& progress);
+  Result<std::vector<RecordFile>> other_files(const std::string& header) const;
+
   const BakeSettings& settings_;
   std::unique_ptr<nlohmann::json> identity_;
   std::chrono::steady_clock::time_point start_;

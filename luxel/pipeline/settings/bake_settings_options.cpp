@@ -225,6 +225,18 @@ Options<S> running_options() {
           .key_is("")
           .only(&Can::parts)
           .leaves(Changes::nothing),
+      BakeRows::text(
+          "--part", &S::part, parse_part,
+          [](const BakePart& part) {
+            return part.is_all() ? json() : json(fmt::format("{}/{}", part.number, part.of));
+          },
+          "Do one part of the work only, as 3/16 the third of 16, and leave it in the folder; "
+          "luxel "
+          "merge ends the bake")
+          .key_is("")
+          .unit("K/N")
+          .only(&Can::parts)
+          .leaves(Changes::nothing),
       BakeRows::toggle(
           "--keep", &S::keep,
           "Build on the bake kept in FOLDER/cache and retrace only what has changed in the "

@@ -36,7 +36,6 @@ Status check_layers(const BakeSettings& s) {
   const char* other = s.denoise                            ? "--denoise"
                       : s.directional != Directional::none ? "--directional"
                       : s.probe_spacing_m > 0              ? "--probes"
-                      : s.resume                           ? "--resume"
                                                            : nullptr;
   if (other)
     return fail(ErrorCode::bad_setting,
@@ -68,13 +67,29 @@ Status check_light(const BakeSettings& s) {
                       : s.directional != Directional::none ? "--directional"
                       : s.probe_spacing_m > 0              ? "--probes"
                       : s.keep                             ? "--keep"
-                      : s.resume                           ? "--resume"
                                                            : nullptr;
   if (!other) return {};
   return fail(ErrorCode::bad_setting,
               "--light {} does not go together with {}, which needs all light; leave one of them "
               "out",
               pipeline::name_of(s.light), other);
+}
+
+/// What parts of a bake cannot have.
+Status check_part(const BakeSettings& s) {
+  if (s.part.is_all()) return {};
+  const std::string part = fmt::format("--part {}/{}", s.part.number, s.part.of);
+  if (s.time_budget_s > 0)
+    return fail(
+        ErrorCode::bad_setting,
+        "{} does not go together with --time-budget {}: the parts of a bake must not depend "
+        "on the clock; use --max-error or --samples",
+        part, s.time_budget_s);
+  if (s.keep)
+    return fail(ErrorCode::bad_setting,
+                "{} does not go together with --keep, which needs all rays; leave one of them out",
+                part);
+  return {};
 }
 
 /// baked.glb shows its light in one way.
@@ -108,6 +123,7 @@ Status check_contradictions(const BakeSettings& s) {
   LUXEL_TRY_STATUS(check_pages(s));
   LUXEL_TRY_STATUS(check_layers(s));
   LUXEL_TRY_STATUS(check_keep(s));
+  LUXEL_TRY_STATUS(check_part(s));
   return s.html ? export_::check_view_page() : Status{};
 }
 
@@ -134,6 +150,20 @@ std::string text_of(const PagesSetting& pages) {
   return pages.mode == atlas::PageMode::automatic      ? "auto"
          : pages.mode == atlas::PageMode::per_instance ? "mesh"
                                                        : fmt::format("{}", pages.count);
+}
+
+Result<BakePart> parse_part(std::string_view text) {
+  constexpr int kMostParts = 100000;
+  const size_t slash = text.find('/');
+  if (slash != std::string_view::npos) {
+    const auto number = number_from<int>(text.substr(0, slash)),
+               of = number_from<int>(text.substr(slash + 1));
+    if (number && of && *number >= 1 && *number <= *of && *of <= kMostParts)
+      return BakePart{*number, *of};
+  }
+  return fail(ErrorCode::bad_setting,
+              "--part {} is no part of a bake; give its number and how many there are, as 3/16",
+              text);
 }
 
 Result<PagesSetting> parse_pages(std::string_view text) {

@@ -44,6 +44,13 @@ struct PagesSetting {
   int count = 1;  ///< fixed
 };
 
+/// Which part of a bake is done: the rest is that of other processes (docs/guide/many-machines.md).
+struct BakePart {
+  int number = 1, of = 1;
+
+  bool is_all() const { return of == 1; }
+};
+
 /// Defaults of what solvers are asked for are gather's, the default solver's. Ranges, help and
 /// notation of each member stand in the table of options (bake_settings_options.cpp).
 struct BakeSettings {
@@ -100,6 +107,9 @@ struct BakeSettings {
   /// never.
   double checkpoint_s = 30;
   bool resume = false;  ///< go on with what another bake has kept
+  BakePart part;
+  /// Files with parts of this bake that are finished. No option: `luxel merge` has them.
+  std::vector<std::filesystem::path> parts;
   bool keep = false;  ///< build on the bake in DIR/cache, or leave one there; docs/method/rebake.md
 };
 
@@ -125,6 +135,8 @@ Result<PagesSetting> parse_pages(std::string_view text);
 std::string text_of(const PagesSetting& pages);
 /// "1500000", "900M", "1.5G": bytes; K, M, G, T are powers of 1024.
 Result<uint64_t> parse_size(std::string_view text);
+/// "3/16": the third of 16 parts.
+Result<BakePart> parse_part(std::string_view text);
 /// "inf" or a number >= 0; inf is -1.
 Result<int> parse_bounces(std::string_view text);
 /// "inf" or a number > 0.

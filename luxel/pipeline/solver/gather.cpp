@@ -238,8 +238,7 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
     own.earlier = &*earlier;
   else
     LUXEL_TRY_STATUS(look_ahead(in, settings, stores, own, params, warnings, progress));
-  // Not for the trial; and the light of layers is not kept yet.
-  if (!told_apart && !params.tells_direct) own.parts = stores.parts;
+  own.parts = stores.parts;  // not for the trial
   if (keeps) own.keep = stores.cache->rays();
   const GatherCall call{in, told_apart, params, own,
                         gather::GatherObserver{.on_estimate = observer.on_estimate,

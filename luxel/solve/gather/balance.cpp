@@ -81,7 +81,7 @@ Status balance_direct(const Request& in, Progressive& light, Progress& progress)
     const uint64_t before = light.direct.rays;
     LUXEL_TRY(const size_t finer, refine_direct(in.scene, plan.finer, in.supersample_params(),
                                                 light.levels, light.direct, progress));
-    if (finer == 0) return {};
+    if (finer == 0 || has_left_parts(in)) return {};
     affordable -= kShadowRay * double(light.direct.rays - before);
   }
   return {};

@@ -145,6 +145,13 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
   return {};
 }
 
+/// Errors (ErrorCode::parts_missing): parts are left to others.
+Status know_all_parts(const Request& in) {
+  if (!has_left_parts(in)) return {};
+  return fail(ErrorCode::parts_missing, "{} parts are left to others",
+              in.stores.parts->parts_left());
+}
+
 /// Rays per element: of those that follow a guide there are more than samples.
 std::vector<uint16_t> rays_of(const TracedHits& hits) {
   std::vector<uint16_t> out = hits.samples;
@@ -200,13 +207,18 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   light.hits = no_hits(scene.elements.size(), in.layer_count());
   if (stores.earlier) light.bounced.irradiance = std::move(stores.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(in, light, progress));
+  LUXEL_TRY_STATUS(know_all_parts(in));
   LUXEL_TRY_STATUS(balance_direct(in, light, progress));
+  LUXEL_TRY_STATUS(know_all_parts(in));
   LUXEL_TRY_STATUS(choose_places(in, light, progress));
   // 3. Rounds of more rays where the estimated error is too large.
   for (bool more = in.adds_rounds(); more;) {
     LUXEL_TRY_STATUS(estimate_round(in, light, progress));
     LUXEL_TRY(more, next_round(in, params.seconds - seconds_since(start), light, progress));
+    LUXEL_TRY_STATUS(know_all_parts(in));
   }
+  if (stores.parts && stores.parts->shares())
+    return fail(ErrorCode::parts_missing, "all rays are known; the rest is not shared out");
   // 4. Which elements lie inside of solids. After this nobody traces rays.
   Gather out;
   out.enclosed = transport::find_enclosed(scene.scene, scene.tracer, scene.elements,

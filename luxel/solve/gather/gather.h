@@ -53,7 +53,9 @@ struct GatherParams {
 struct GatherStores {
   uint64_t hit_memory_bytes = UINT64_MAX;      ///< for hits; the rest goes to temporary files
   std::filesystem::path scratch_folder = ".";  ///< where those files are
-  PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
+  /// Where finished parts are kept and found; null: nowhere. With a share of its own, only parts of
+  /// that share are worked on, and gather ends when all rays are known.
+  PartStore* parts = nullptr;
   PartStore* keep = nullptr;   ///< where rays are kept for later bakes of the scene; null: nowhere
   /// Lights places, traces rays and has their hits; null: the processor. Not with keep, earlier or
   /// light that is told apart.
@@ -129,7 +131,9 @@ inline constexpr uint64_t kEnclosedBytesPerElement = bytes_per_entry(&Gather::en
 inline constexpr uint64_t kTargetBytesPerElement = bytes_per_entry(&Gather::samples);
 
 /// Direct light, rays, bounces: the chain of docs/method/gather.md. `layers` tells light apart;
-/// null: it does not. Errors: cancelled, disk full; with stores.device those of RayDevice.
+/// null: it does not. Errors: cancelled, disk full; with stores.device those of RayDevice; with a
+/// share of the parts, ErrorCode::parts_missing where others have theirs to do, or where all rays
+/// are known (PartStore::parts_left() is 0 then).
 Result<Gather> gather(const light::TexelScene& in, const light::LightLayers* layers,
                       const GatherParams& params, const GatherStores& stores,
                       const GatherObserver& observer, Progress& progress);

@@ -39,6 +39,7 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
   }
   LUXEL_TRY(light.direct,
             light::direct_light(light::lit_elements(scene), supersample.direct, progress));
+  if (has_left_parts(in)) return {};
   // Only light with noise is ever looked at more finely. Where it comes from one lamp, and few
   // elements see that one, all others' rays say nothing of how many it takes.
   const auto noisy = std::ranges::count_if(light.direct.variance, [](float v) { return v > 0; });

@@ -65,7 +65,13 @@ struct Progressive {
 /// What light of an element costs, by the rays that have been traced.
 RayCosts costs_of(const Request& in, const Progressive& light);
 
-/// Direct light, from scratch or from an earlier bake. Errors: cancelled.
+/// Whether parts of what has been done so far are left to others: it is not known as a whole.
+inline bool has_left_parts(const Request& in) {
+  return in.stores.parts && in.stores.parts->parts_left() > 0;
+}
+
+/// Direct light, from scratch or from an earlier bake; not averaged where parts are left to others.
+/// Errors: cancelled.
 Status begin_direct(const Request& in, Progressive& light, Progress& progress);
 /// Rays of each element up to so many as `target` says. `watch`: null: nobody. Errors: cancelled,
 /// disk full; those of stores.device.

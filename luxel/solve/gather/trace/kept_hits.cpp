@@ -4,17 +4,25 @@
 
 #include "luxel/base/bytes.h"
 #include "luxel/base/digest.h"
+#include "luxel/light/kept_light.h"
 
 namespace luxel::gather {
 namespace {
 
-/// Everything that a round of tracing changes per element.
+/// Everything that a round of tracing changes per element: visit(array, values per element).
 template <class Hits, class Visit>
 void for_each_array(Hits& hits, const Visit& visit) {
-  visit(hits.samples), visit(hits.last_round), visit(hits.first_round), visit(hits.guided),
-      visit(hits.counted);
-  visit(hits.escaped), visit(hits.met_back), visit(hits.met_double_sided_back);
-  visit(hits.sky), visit(hits.sky_luminance2), visit(hits.sky_first_less_second);
+  visit(hits.samples, 1), visit(hits.last_round, 1), visit(hits.first_round, 1);
+  visit(hits.guided, 1), visit(hits.counted, 1);
+  visit(hits.escaped, 1), visit(hits.met_back, 1), visit(hits.met_double_sided_back, 1);
+  visit(hits.sky, 1), visit(hits.sky_luminance2, 1), visit(hits.sky_first_less_second, 1);
+  visit(hits.sky_by_layer, hits.sky_by_layer.size() / std::max<size_t>(hits.size(), 1));
+}
+
+/// The values of elements [begin, end).
+template <class Array>
+auto part_of(Array& array, size_t per_element, size_t begin, size_t end) {
+  return std::span(array).subspan(begin * per_element, (end - begin) * per_element);
 }
 
 KeptEntries entries_at_end(const KeptStage& kept, size_t part, size_t bytes, const HitTile& tile) {
@@ -38,7 +46,8 @@ KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
   digest.add(std::span(hits.guide.of_element));
   for (const GuidedGroup& group : hits.guide.groups)
     digest.add(std::span<const float>(group.doublings));
-  for_each_array(hits, [&](const auto& array) { digest.add(std::span(array)); });
+  for_each_array(hits, [&](const auto& array, size_t) { digest.add(std::span(array)); });
+  light::add_to(digest, params.layers), light::add_to(digest, params.followed_layers);
   return {params.parts, digest.value()};
 }
 
@@ -47,8 +56,9 @@ KeptEntries keep_tile(const KeptStage& kept, size_t begin, size_t end, const Tra
   if (!kept.wants()) return {};
   ByteWriter out;
   out.put_value(tile.rays);
-  for_each_array(hits,
-                 [&](const auto& array) { out.put(std::span(array).subspan(begin, end - begin)); });
+  for_each_array(hits, [&](const auto& array, size_t per_element) {
+    out.put(part_of(array, per_element, begin, end));
+  });
   out.put(std::span(tile.rays_met.hits.end));
   out.put(std::span(tile.rays_met.hits.entries));
   const size_t part = begin / kTileElements;
@@ -65,8 +75,8 @@ std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t e
   ByteReader in{*bytes};
   out.tile.rays = in.get_value<uint64_t>();
   ByteReader arrays = in;
-  for_each_array(hits, [&](const auto& array) {
-    const size_t size = (end - begin) * sizeof(array[0]);
+  for_each_array(hits, [&](const auto& array, size_t per_element) {
+    const size_t size = part_of(array, per_element, begin, end).size_bytes();
     in.ok = in.ok && size <= in.bytes.size();
     if (in.ok) in.bytes = in.bytes.subspan(size);
   });
@@ -77,8 +87,9 @@ std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t e
   tile.entries.resize(tile.end.back());
   in.get(std::span(tile.entries));
   if (!is_sound(tile, places)) return std::nullopt;
-  for_each_array(hits,
-                 [&](auto& array) { arrays.get(std::span(array).subspan(begin, end - begin)); });
+  for_each_array(hits, [&](auto& array, size_t per_element) {
+    arrays.get(part_of(array, per_element, begin, end));
+  });
   out.entries = entries_at_end(kept, part, bytes->size(), tile);
   return out;
 }

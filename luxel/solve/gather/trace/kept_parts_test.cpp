@@ -103,6 +103,57 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
     }
 }
 
+/// Does a share of a solution. Returns how many parts are left to others.
+uint64_t do_share(const Room& room, const GatherParams& params, PartShare share,
+                  const std::vector<fs::path>& files) {
+  Progress progress;
+  std::vector<RecordFile> others;
+  std::optional<RecordFile> own;
+  for (size_t k = 0; k < files.size(); ++k) {
+    if (!fs::exists(files[k])) continue;
+    if (k == share.number)
+      own = std::move(*RecordFile::open(files[k]));
+    else
+      others.push_back(std::move(*RecordFile::open_to_read(files[k])));
+  }
+  PartStore parts(
+      PartStoreParams{files[share.number], "", "", 1e-9,
+                      std::chrono::steady_clock::now() - std::chrono::seconds(1), share},
+      progress, std::move(own), std::move(others));
+  GatherStores stores;
+  stores.parts = &parts;
+  const auto done = gather(scene_of(room), nullptr, params, stores, {}, progress);
+  EXPECT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::parts_missing) << done.error().message;
+  return parts.parts_left();
+}
+
+// Each process does its share of a stage, and goes on when it finds what the others have done; the
+// rest is done by one that finds all of it, after any of the passes.
+TEST_F(KeptParts, AreSharedOutAndGiveTheSameBits) {
+  const auto room = some_room();
+  for (const float max_error : {0.0f, 0.05f}) {
+    GatherParams params = some_params();
+    params.max_error = max_error, params.max_samples = 128;
+    params.more_shadow_rays = params.more_points = max_error == 0;
+    const Gather expected = solve(*room, params);
+    std::vector<fs::path> files;
+    for (const char* name : {"a", "b", "c"})
+      files.push_back(file(name + std::to_string(max_error)));
+    uint64_t left = 1;
+    for (int pass = 0; left > 0; ++pass) {
+      ASSERT_LT(pass, 12);
+      left = 0;
+      for (uint32_t k = 0; k < 3; ++k) left += do_share(*room, params, {k, 3}, files);
+      std::vector<RecordFile> all;
+      for (const fs::path& one : files) all.push_back(std::move(*RecordFile::open_to_read(one)));
+      PartStore found(PartStoreParams{file("merged"), "", "", 0}, progress_, {}, std::move(all));
+      expect_same(solve_with(*room, params, &found), expected);
+      EXPECT_GT(found.parts_found(), 0u);
+    }
+  }
+}
+
 // What was kept is what is used: other light in a part is other light in the result.
 TEST_F(KeptParts, AreUsed) {
   const auto room = some_room();

@@ -256,6 +256,8 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
       rays += found->tile.rays;
       if (round.watch) round.watch->on_tile(begin, found->tile.rays_met.hits);
       put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
+    } else if (kept.leaves(number)) {
+      progress.skip(planned);
     } else {
       TileBuffers buffers = pool.take();
       TracedTile& tile = buffers.tile;

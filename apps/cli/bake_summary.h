@@ -1,0 +1,13 @@
+// What commands say that have baked.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "luxel/pipeline/settings/settings.h"
+
+namespace luxel::cli {
+
+/// Prints in words what bake.json holds, and the names of the files.
+void print_bake(const pipeline::BakeSettings& settings, const nlohmann::json& json);
+
+}  // namespace luxel::cli

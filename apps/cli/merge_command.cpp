@@ -1,0 +1,49 @@
+#include "apps/cli/bake_summary.h"
+#include "apps/cli/cli.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/reuse/bake_parts.h"
+
+namespace luxel::cli {
+namespace {
+
+struct MergeOptions {
+  Common common;
+  std::vector<std::filesystem::path> parts;
+  std::filesystem::path output, scene;
+  std::string max_memory;
+};
+
+int run_merge(const MergeOptions& options) {
+  auto settings = pipeline::settings_of_parts(options.parts);
+  if (!settings) return report(settings.error(), options.common);
+  settings->output = options.output, settings->threads = options.common.threads;
+  if (!options.scene.empty()) settings->scene = options.scene;
+  if (!options.max_memory.empty()) {
+    const auto bytes = pipeline::parse_size(options.max_memory);
+    if (!bytes) return report(bytes.error(), options.common);
+    settings->max_memory_bytes = *bytes;
+  }
+  return run_and_print(
+      options.common, [&](Progress& progress) { return pipeline::bake(*settings, progress); },
+      [&](const nlohmann::json& json) { print_bake(*settings, json); });
+}
+
+}  // namespace
+
+void register_merge(CLI::App& app, Action& action) {
+  CLI::App* merge =
+      app.add_subcommand("merge", "End a bake whose parts `luxel bake --part` has left");
+  auto options = std::make_shared<MergeOptions>();
+  merge->add_option("PART", options->parts, "Files of parts, or folders with some")->required();
+  merge->add_option("-o,--output", options->output, "Folder for the results; made when missing")
+      ->required();
+  merge
+      ->add_option("--scene", options->scene,
+                   "Where the scene is (where it was when the parts were made)")
+      ->type_name("FILE");
+  merge->add_option("--max-memory", options->max_memory, "As of luxel bake")->type_name("SIZE");
+  add_common(*merge, options->common);
+  merge->callback([options, &action] { action = [options] { return run_merge(*options); }; });
+}
+
+}  // namespace luxel::cli

@@ -95,9 +95,9 @@ Status add_errors(const std::filesystem::path& shared, bool is_card, gather::Ray
     const NamedScene named{file.stem().string(), shared / "scenes" / file};
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
-    LUXEL_TRY_STATUS(add_bake(
-        fmt::format("{} to an RMS error of {:.0f} %", named.name, 100 * kAskedError),
-        std::move(scene), is_card ? kErrorResolution : kFewTexels, params, device, table));
+    LUXEL_TRY_STATUS(
+        add_bake(fmt::format("{} to an RMS error of {:.0f} %", named.name, 100 * kAskedError),
+                 std::move(scene), is_card ? kErrorResolution : kFewTexels, params, device, table));
   }
   return {};
 }

@@ -45,7 +45,7 @@ TEST_F(LeaksOfReuse, AResumedBakeIsBlack) {
   BakeSettings asked = settings([](scene::Scene&) {});
   asked.checkpoint_s = 1e-3;  // parts are kept from the start on
   {
-    Checkpoint left(asked, settings_of_checkpoint(asked));
+    Checkpoint left(asked, settings_of_checkpoint(asked), to_json(asked));
     Progress progress;
     BakeObserver stop;
     stop.on_estimate = [&](const light::TexelScene&, const light::LightEstimate&) {
@@ -56,7 +56,7 @@ TEST_F(LeaksOfReuse, AResumedBakeIsBlack) {
     ASSERT_GT(left.parts()->parts_kept(), 0u);
   }
   asked.resume = true;
-  Checkpoint found(asked, settings_of_checkpoint(asked));
+  Checkpoint found(asked, settings_of_checkpoint(asked), to_json(asked));
   Progress progress;
   const auto bake = bake_scene(asked, progress, {&found, nullptr});
   ASSERT_TRUE(bake) << bake.error().message;

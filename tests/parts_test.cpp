@@ -23,7 +23,7 @@ std::string results_in(const fs::path& folder) {
   return out;
 }
 
-class Parts : public ::testing::Test {
+class BakesInParts : public ::testing::Test {
  protected:
   std::string part(int number, int of, const std::string& more) const {
     return fmt::format("bake {} -o {} --part {}/{} --json", more, folder_.string(), number, of);
@@ -38,6 +38,8 @@ class Parts : public ::testing::Test {
     fs::remove_all(folder);
     const CommandResult r = luxel("merge " + parts + " -o " + folder.string());
     EXPECT_EQ(r.code, 0) << r.err;
+    const auto report = nlohmann::json::parse(slurp(folder / "bake.json"));
+    EXPECT_GT(report["checkpoint"]["parts_found"].get<int>(), 0);
     return results_in(folder);
   }
   std::string at_once(const std::string& more) {
@@ -53,7 +55,7 @@ class Parts : public ::testing::Test {
 };
 
 // Three scenes, numbers of parts, and what decides how many rays there are.
-TEST_F(Parts, GiveTheBitsOfOneBake) {
+TEST_F(BakesInParts, GiveTheBitsOfOneBake) {
   const std::pair<int, std::string> kinds[] = {
       {3, scene_file("cornell-box.glb") + " --resolution 96 --samples 64"},
       {8, scene_file("office.glb") + " --resolution 96 --max-error 0.1"},
@@ -68,7 +70,7 @@ TEST_F(Parts, GiveTheBitsOfOneBake) {
 }
 
 // A pass goes on from what all parts have left, until the next stages need nothing more.
-TEST_F(Parts, GoOnFromEachOther) {
+TEST_F(BakesInParts, GoOnFromEachOther) {
   const std::string more = scene_file("cornell-box.glb") + " --resolution 64 --max-error 0.05";
   int left = 1, passes = 0;
   for (; left > 0 && passes < 12; ++passes) {
@@ -82,7 +84,7 @@ TEST_F(Parts, GoOnFromEachOther) {
 }
 
 // A part that is killed goes on where it stood; what no part has, merge does itself.
-TEST_F(Parts, LoseNothingButWhatWasUnderWay) {
+TEST_F(BakesInParts, LoseNothingButWhatWasUnderWay) {
   const std::string more = scene_file("cornell-box.glb") + " --resolution 128 --samples 1024";
   const fs::path file = folder_ / "part-1-of-2.luxel";
   {
@@ -98,7 +100,7 @@ TEST_F(Parts, LoseNothingButWhatWasUnderWay) {
   EXPECT_EQ(cut, at_once(more));
 }
 
-TEST_F(Parts, AreRefusedWhereTheyCannotBe) {
+TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
   const std::string box = scene_file("cornell-box.glb") + " --resolution 32";
   const auto error = [](const std::string& arguments) {
     const CommandResult r = luxel(arguments);

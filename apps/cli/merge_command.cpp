@@ -1,7 +1,7 @@
 #include "apps/cli/bake_summary.h"
 #include "apps/cli/cli.h"
 #include "luxel/pipeline/bake/bake.h"
-#include "luxel/pipeline/reuse/bake_parts.h"
+#include "luxel/pipeline/bake/merge_parts.h"
 
 namespace luxel::cli {
 namespace {

@@ -65,7 +65,7 @@ Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progres
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY(const FileLock lock, FileLock::take(file.string() + ".lock", file.string()));
-  Checkpoint checkpoint(settings, settings_of_checkpoint(settings));
+  Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings));
   const Result<Bake> ended = bake_scene(settings, progress, {.checkpoint = &checkpoint});
   const PartStore* parts = checkpoint.parts();
   if (parts != nullptr && parts->has_failed())
@@ -92,7 +92,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
   if (!settings.part.is_all()) return bake_part(settings, progress, device);
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
-  Checkpoint checkpoint(settings, settings_of_checkpoint(settings));
+  Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings));
   BakeCache cache(settings, settings_of_kept_bake(settings));
   LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())

@@ -1,10 +1,6 @@
 #include "luxel/pipeline/reuse/bake_parts.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-
-#include "luxel/base/check.h"
-#include "luxel/pipeline/solver/bake_options.h"
 
 namespace luxel::pipeline {
 
@@ -32,43 +28,6 @@ std::vector<fs::path> other_parts(const BakeSettings& settings) {
   if (settings.part.is_all()) return settings.parts;
   std::vector<fs::path> out = part_files_in(settings.output);
   std::erase(out, parts_file(settings));
-  return out;
-}
-
-namespace {
-
-Result<BakeSettings> settings_of_part(const fs::path& file) {
-  LUXEL_TRY(const RecordFile found, RecordFile::open_to_read(file, RecordFile::Check::when_read));
-  const nlohmann::json header = nlohmann::json::parse(found.header(), nullptr, false);
-  if (!header.is_object() || !header.contains("bake"))
-    return fail(ErrorCode::bad_input, "{} has no parts of a bake; luxel bake --part leaves some",
-                file.string());
-  BakeSettings out;
-  if (const Status read = read_json(header["bake"], out); !read)
-    return fail(read.error().code, "{}: {}", file.string(), read.error().message);
-  return out;
-}
-
-}  // namespace
-
-Result<BakeSettings> settings_of_parts(std::span<const fs::path> given) {
-  std::vector<fs::path> files;
-  for (const fs::path& one : given) {
-    std::error_code ignored;
-    if (!fs::is_directory(one, ignored)) {
-      files.push_back(one);
-      continue;
-    }
-    const std::vector<fs::path> inside = part_files_in(one);
-    if (inside.empty())
-      return fail(ErrorCode::bad_input, "{} has no parts of a bake; luxel bake --part leaves some",
-                  one.string());
-    files.insert(files.end(), inside.begin(), inside.end());
-  }
-  LUXEL_CHECK(!files.empty());
-  LUXEL_TRY(BakeSettings out, settings_of_part(files.front()));
-  out.parts = std::move(files);
-  out.threads = BakeSettings{}.threads, out.max_memory_bytes = BakeSettings{}.max_memory_bytes;
   return out;
 }
 

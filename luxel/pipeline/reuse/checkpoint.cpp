@@ -8,7 +8,6 @@
 
 #include "luxel/pipeline/reuse/bake_parts.h"
 #include "luxel/pipeline/settings/version.h"
-#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/scene/digest.h"
 
 namespace luxel::pipeline {
@@ -93,9 +92,10 @@ std::string difference_of(const RecordFile& file, const std::string& header) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity)
+Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity, const json& all_settings)
     : settings_(settings),
       identity_(std::make_unique<json>(identity)),
+      all_settings_(std::make_unique<json>(all_settings)),
       start_(std::chrono::steady_clock::now()) {}
 
 Checkpoint::~Checkpoint() = default;
@@ -143,7 +143,7 @@ Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& heade
 Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   if (settings_.keep) return {};
   json described = checkpoint_header(*identity_, scene);
-  described["bake"] = to_json(settings_);
+  described["bake"] = *all_settings_;
   // Names of things may be no UTF-8, which JSON knows nothing else of.
   const std::string header = described.dump(-1, ' ', false, json::error_handler_t::replace);
   LUXEL_TRY(std::optional<RecordFile> found, own_file(header, progress));

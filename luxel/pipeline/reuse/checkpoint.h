@@ -27,8 +27,10 @@ std::string difference(const nlohmann::json& there, const nlohmann::json& here);
 class Checkpoint {
  public:
   /// The bake begins now. `settings` outlives this; `identity` is what must be equal in a bake that
-  /// goes on with it (settings_of_checkpoint).
-  Checkpoint(const BakeSettings& settings, const nlohmann::json& identity);
+  /// goes on with it (settings_of_checkpoint), `all_settings` what the file says to who ends the
+  /// bake (to_json).
+  Checkpoint(const BakeSettings& settings, const nlohmann::json& identity,
+             const nlohmann::json& all_settings);
   ~Checkpoint();
 
   /// The scene is known, with its outside light. With settings.resume goes on with the file that is
@@ -50,7 +52,7 @@ class Checkpoint {
   Result<std::vector<RecordFile>> other_files(const std::string& header) const;
 
   const BakeSettings& settings_;
-  std::unique_ptr<nlohmann::json> identity_;
+  std::unique_ptr<nlohmann::json> identity_, all_settings_;
   std::chrono::steady_clock::time_point start_;
   bool resumed_ = false;
   std::string note_;

@@ -56,7 +56,7 @@ struct GatherStores {
   /// Where finished parts are kept and found; null: nowhere. With a share of its own, only parts of
   /// that share are worked on, and gather ends when all rays are known.
   PartStore* parts = nullptr;
-  PartStore* keep = nullptr;   ///< where rays are kept for later bakes of the scene; null: nowhere
+  PartStore* keep = nullptr;  ///< where rays are kept for later bakes of the scene; null: nowhere
   /// Lights places, traces rays and has their hits; null: the processor. Not with keep, earlier or
   /// light that is told apart.
   RayDevice* device = nullptr;

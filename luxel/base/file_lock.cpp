@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,16 +11,27 @@
 namespace luxel {
 inline namespace base {
 
+bool is_still_there(int file, const std::filesystem::path& path) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
 Result<FileLock> FileLock::take(const std::filesystem::path& path, const std::string& what) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0)
-    return fail(ErrorCode::io, "cannot write {}: {}", path.string(), std::strerror(errno));
-  if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  // Whoever held it before may remove the file between open and lock.
+  for (int attempt = 0;; ++attempt) {
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0)
+      return fail(ErrorCode::io, "cannot write {}: {}", path.string(), std::strerror(errno));
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      ::close(file);
+      return fail(ErrorCode::bad_setting,
+                  "another process is at work on {}; wait until it has ended", what);
+    }
+    if (is_still_there(file, path) || attempt == 9) return FileLock(path, file);
     ::close(file);
-    return fail(ErrorCode::bad_setting, "another process is at work on {}; wait until it has ended",
-                what);
   }
-  return FileLock(path, file);
 }
 
 FileLock::~FileLock() {

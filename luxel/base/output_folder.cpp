@@ -2,13 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "luxel/base/file.h"
+#include "luxel/base/file_lock.h"
 
 namespace luxel {
 namespace {
@@ -37,14 +37,6 @@ Status try_to_write_into(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(probe, ignored);
   return {};
-}
-
-/// Whether an open folder is still the one of that name.
-bool is_still_there(int open_folder, const fs::path& folder) {
-  struct stat opened {
-  }, named{};
-  return ::fstat(open_folder, &opened) == 0 && ::stat(folder.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 }  // namespace

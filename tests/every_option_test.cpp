@@ -110,6 +110,7 @@ Options values_of(const Inputs& in) {
       {"--normal", "0,1,0"},
       {"--overlay", "mesh,links,discontinuities,triangulation,error,samples"},
       {"--pages", "mesh"},
+      {"--part", "1/2"},
       {"--patches", "40"},
       {"--plan", ""},
       {"--plane", "0.5"},

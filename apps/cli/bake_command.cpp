@@ -48,6 +48,9 @@ void print_plan(const nlohmann::json& json) {
 }
 
 int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings) {
+  if (!settings.part.is_all())
+    return report({ErrorCode::bad_setting, "--plan is for a whole bake; leave --part out"},
+                  options.common);
   const auto work = [&](Progress& progress) -> Result<nlohmann::json> {
     LUXEL_TRY(const pipeline::Plan plan, pipeline::plan_bake(settings, progress));
     return to_json(plan);

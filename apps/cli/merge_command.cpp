@@ -11,6 +11,7 @@ struct MergeOptions {
   std::vector<std::filesystem::path> parts;
   std::filesystem::path output, scene;
   std::string max_memory;
+  Given reading, outside;
 };
 
 int run_merge(const MergeOptions& options) {
@@ -23,6 +24,15 @@ int run_merge(const MergeOptions& options) {
     if (!bytes) return report(bytes.error(), options.common);
     settings->max_memory_bytes = *bytes;
   }
+  if (options.outside.has("--ies")) settings->outside.ies.clear();  // those given win
+  if (const Status read =
+          read_given(options.reading, pipeline::import_options(), settings->reading);
+      !read)
+    return report(read.error(), options.common);
+  if (const Status read =
+          read_given(options.outside, pipeline::outside_light_options(), settings->outside);
+      !read)
+    return report(read.error(), options.common);
   return run_and_print(
       options.common, [&](Progress& progress) { return pipeline::bake(*settings, progress); },
       [&](const nlohmann::json& json) { print_bake(*settings, json); });
@@ -39,9 +49,11 @@ void register_merge(CLI::App& app, Action& action) {
       ->required();
   merge
       ->add_option("--scene", options->scene,
-                   "Where the scene is (where it was when the parts were made)")
+                   "Where the scene is (where it was for the parts, seen from here)")
       ->type_name("FILE");
   merge->add_option("--max-memory", options->max_memory, "As of luxel bake")->type_name("SIZE");
+  add_import(*merge, options->reading);
+  add_outside_light(*merge, options->outside);
   add_common(*merge, options->common);
   merge->callback([options, &action] { action = [options] { return run_merge(*options); }; });
 }

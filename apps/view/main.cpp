@@ -123,6 +123,8 @@ Status check_choice(const Options& options) {
                 kHemicube);
   if (!options.inside.empty()) LUXEL_TRY_STATUS(check_inside(options));
   LUXEL_TRY_STATUS(check_relight(options));
+  if (choice.given.has("--part"))
+    return fail(ErrorCode::bad_setting, "a window shows all of a bake; leave --part out");
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";

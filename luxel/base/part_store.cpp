@@ -12,6 +12,10 @@ Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
 
+std::string note_of(const Error& error) {
+  return error.message + "; the work goes on, but what is finished from now on is not kept";
+}
+
 }  // namespace
 
 PartStore::PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found,
@@ -32,7 +36,7 @@ bool PartStore::wants() const {
 
 bool PartStore::keep(RecordKey part, std::span<const std::byte> bytes) {
   if (!wants() || !make_file()) return false;
-  const Status kept = file_->append(part, bytes);
+  const Status kept = file_->append(key_of(part), bytes);
   if (!kept) {
     const std::lock_guard lock(mutex_);
     fail_locked(kept.error());
@@ -45,7 +49,7 @@ bool PartStore::keep(RecordKey part, std::span<const std::byte> bytes) {
 
 Status PartStore::begin() {
   if (make_file()) return {};
-  return fail(ErrorCode::io, "{}", failure());
+  return tl::unexpected(*error());
 }
 
 bool PartStore::make_file() {
@@ -65,13 +69,18 @@ bool PartStore::make_file() {
 
 void PartStore::fail_locked(const Error& error) {
   if (failed_.exchange(true)) return;
-  failure_ = error.message + "; the work goes on, but what is finished from now on is not kept";
-  progress_.note("warning: " + failure_);
+  error_ = error;
+  if (!shares()) progress_.note("warning: " + note_of(error));
+}
+
+std::optional<Error> PartStore::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
 }
 
 std::string PartStore::failure() const {
-  const std::lock_guard lock(mutex_);
-  return failure_;
+  const std::optional<Error> happened = error();
+  return happened ? note_of(*happened) : std::string();
 }
 
 /// Whoever comes first when it is time waits for the disk; the others go on.
@@ -84,31 +93,33 @@ void PartStore::flush_now_and_then() {
 }
 
 /// Null: none has it.
-const RecordFile* PartStore::file_with(RecordKey part) const {
-  if (has_file_ && file_->size_of(part)) return &*file_;
+const RecordFile* PartStore::file_with(RecordKey key) const {
+  if (has_file_ && file_->size_of(key)) return &*file_;
   for (const RecordFile& other : others_)
-    if (other.size_of(part)) return &other;
+    if (other.size_of(key)) return &other;
   return nullptr;
 }
 
 std::optional<std::vector<std::byte>> PartStore::find(RecordKey part) const {
-  const RecordFile* file = file_with(part);
+  const RecordKey key = key_of(part);
+  const RecordFile* file = file_with(key);
   if (!file) return std::nullopt;
-  std::vector<std::byte> bytes(*file->size_of(part));
-  if (!file->read(part, 0, bytes)) return std::nullopt;
+  std::vector<std::byte> bytes(*file->size_of(key));
+  if (!file->read(key, 0, bytes)) return std::nullopt;
   ++found_;
   return bytes;
 }
 
 bool PartStore::leaves(RecordKey part) const {
-  if (params_.share.has(part.part)) return false;
+  if (!shares() || (params_.share->has(part.part) && !failed_)) return false;
   ++left_;
   return true;
 }
 
 bool PartStore::read(RecordKey part, uint64_t offset, std::span<std::byte> out) const {
-  const RecordFile* file = file_with(part);
-  return file && file->read(part, offset, out);
+  const RecordKey key = key_of(part);
+  const RecordFile* file = file_with(key);
+  return file && file->read(key, offset, out);
 }
 
 }  // namespace base

@@ -33,7 +33,7 @@ struct PartStoreParams {
   /// often everything is flushed to the disk, too. 0: nothing is ever added.
   double interval_s = 30;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  PartShare share{};
+  std::optional<PartShare> share{};  ///< none: all parts are worked on
 };
 
 /// Parts are found again by what they were made from: a stage is the digest of its name and of
@@ -53,28 +53,34 @@ class PartStore {
 
   /// Whether keep() would keep a part now: without that it need not be put together.
   bool wants() const;
+  /// What all stages from now on depend on besides, as a digest: parts of others are not found.
+  void set_context(uint64_t context) { context_ = context; }
   /// Makes the file, which otherwise the first part to be kept does. Errors: it cannot be written.
   Status begin();
   /// Returns whether it was kept.
   bool keep(RecordKey part, std::span<const std::byte> bytes);
   std::optional<std::vector<std::byte>> find(RecordKey part) const;
-  /// Whether a part that was not found is left to others: it is not of the share. Counts it.
+  /// Whether a part that was not found is left to others: it is not of the share, or what is made
+  /// of it could not be kept. Counts it.
   bool leaves(RecordKey part) const;
   uint64_t parts_left() const { return left_; }
-  bool shares() const { return params_.share.of > 1; }
+  bool shares() const { return params_.share.has_value(); }
   /// Bytes of a part that was kept or found, from an offset on. False when the disk fails.
   bool read(RecordKey part, uint64_t offset, std::span<std::byte> out) const;
 
   const std::filesystem::path& file() const { return params_.file; }
   bool has_failed() const { return failed_; }
-  /// The note about that; empty: it has not.
+  /// What has happened; nothing: it has not.
+  std::optional<Error> error() const;
+  /// The note about that for work that goes on; empty: it has not.
   std::string failure() const;
   uint64_t parts_found() const { return found_; }
   uint64_t parts_kept() const { return kept_; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  const RecordFile* file_with(RecordKey part) const;
+  RecordKey key_of(RecordKey part) const { return {part.stage ^ context_, part.part}; }
+  const RecordFile* file_with(RecordKey key) const;
   bool make_file();
   void fail_locked(const Error& error);
   void flush_now_and_then();
@@ -84,8 +90,9 @@ class PartStore {
   mutable std::mutex mutex_;
   std::optional<RecordFile> file_;  ///< made under the mutex, never taken away
   std::vector<RecordFile> others_;
+  uint64_t context_ = 0;
   std::atomic<bool> has_file_{false}, failed_{false};
-  std::string failure_;
+  std::optional<Error> error_;
   std::atomic<Clock::rep> flush_at_{0};
   mutable std::atomic<uint64_t> found_{0}, left_{0};
   std::atomic<uint64_t> kept_{0};

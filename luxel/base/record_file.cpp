@@ -122,7 +122,8 @@ Result<RecordFile> RecordFile::open(const std::filesystem::path& path, Check che
 }
 
 Result<RecordFile> RecordFile::open_to_read(const std::filesystem::path& path, Check check) {
-  return open(path, O_RDONLY, check);
+  // Without O_NONBLOCK a pipe would be waited for until somebody writes to it.
+  return open(path, O_RDONLY | O_NONBLOCK, check);
 }
 
 Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags, Check check) {
@@ -131,9 +132,14 @@ Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags
   RecordFile out(path, file);
   struct stat about {};
   if (::fstat(file, &about) != 0) return io_error("open", path, errno);
+  if (!S_ISREG(about.st_mode))
+    return fail(ErrorCode::io, "{} is no file on a disk; only those can be read", path.string());
   LUXEL_TRY_STATUS(out.read_header(uint64_t(about.st_size)));
-  LUXEL_TRY_STATUS(out.read_records(uint64_t(about.st_size), check));
-  if (flags == O_RDWR) LUXEL_TRY_STATUS(out.cut_off(uint64_t(about.st_size)));
+  const Status read = out.read_records(uint64_t(about.st_size), check);
+  // A network file system may show how long a file is before it shows what is in it.
+  if (flags != O_RDWR) return out;
+  LUXEL_TRY_STATUS(read);
+  LUXEL_TRY_STATUS(out.cut_off(uint64_t(about.st_size)));
   return out;
 }
 
@@ -158,26 +164,33 @@ Status RecordFile::read_header(uint64_t file_bytes) {
   return {};
 }
 
+/// The record at end_. False: it is cut off by the end of the file.
+Result<bool> RecordFile::read_record(uint64_t file_bytes, Check check,
+                                     std::vector<std::byte>& bytes) {
+  if (file_bytes - end_ < sizeof(RecordStart)) return false;
+  RecordStart start;
+  if (const int error = read_at(file_, end_, std::span(&start, 1)))
+    return io_error("read", path_, error);
+  if (start.digest != digest_of_start(start))
+    return damaged(path_, end_, "the start of record {} is not as written", positions_.size() + 1);
+  const uint64_t data = end_ + sizeof(start);
+  if (start.bytes > file_bytes - data) return false;
+  if (check == Check::now) {
+    bytes.resize(start.bytes);
+    if (const int error = read_at(file_, data, std::span(bytes)))
+      return io_error("read", path_, error);
+    if (digest_of(bytes) != start.bytes_digest)
+      return damaged(path_, data, "record {} is not as written", positions_.size() + 1);
+  }
+  positions_[start.key] = {data, start.bytes, start.bytes_digest};
+  end_ = data + start.bytes;
+  return true;
+}
+
 Status RecordFile::read_records(uint64_t file_bytes, Check check) {
   std::vector<std::byte> bytes;
-  while (file_bytes - end_ >= sizeof(RecordStart)) {
-    RecordStart start;
-    if (const int error = read_at(file_, end_, std::span(&start, 1)))
-      return io_error("read", path_, error);
-    if (start.digest != digest_of_start(start))
-      return damaged(path_, end_, "the start of record {} is not as written",
-                     positions_.size() + 1);
-    const uint64_t data = end_ + sizeof(start);
-    if (start.bytes > file_bytes - data) break;  // cut off while it was written
-    if (check == Check::now) {
-      bytes.resize(start.bytes);
-      if (const int error = read_at(file_, data, std::span(bytes)))
-        return io_error("read", path_, error);
-      if (digest_of(bytes) != start.bytes_digest)
-        return damaged(path_, data, "record {} is not as written", positions_.size() + 1);
-    }
-    positions_[start.key] = {data, start.bytes, start.bytes_digest};
-    end_ = data + start.bytes;
+  for (bool more = true; more;) {
+    LUXEL_TRY(more, read_record(file_bytes, check, bytes));
   }
   return {};
 }

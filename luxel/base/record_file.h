@@ -44,8 +44,8 @@ class RecordFile {
   /// A cut-off record at the file's end is taken away. Errors: no such file, none of this kind,
   /// damaged: the sentence names the byte.
   static Result<RecordFile> open(const std::filesystem::path& path, Check check = Check::now);
-  /// One that others may be writing: as far as it goes now, and left as it is. Nothing is appended
-  /// to it. Errors: as open().
+  /// One that others may be writing: as far as it is sound now, and left as it is. Nothing is
+  /// appended to it. Errors: no such file, none of this kind, a damaged header.
   static Result<RecordFile> open_to_read(const std::filesystem::path& path,
                                          Check check = Check::now);
   RecordFile(RecordFile&& other) noexcept;
@@ -82,6 +82,7 @@ class RecordFile {
   static Result<RecordFile> open(const std::filesystem::path& path, int flags, Check check);
   Status read_header(uint64_t file_bytes);
   Status read_records(uint64_t file_bytes, Check check);
+  Result<bool> read_record(uint64_t file_bytes, Check check, std::vector<std::byte>& bytes);
   Status cut_off(uint64_t file_bytes);
   std::optional<RecordPosition> position_of(RecordKey key) const;
 

@@ -12,7 +12,7 @@ VkDeviceSize to_next(VkDeviceAddress address, VkDeviceSize step) {
   return (step - address % step) % step;
 }
 
-/// What every device may ask for at most: 256 bytes (VUID-VkAccelerationStructureCreateInfoKHR).
+/// minAccelerationStructureScratchOffsetAlignment is this at most.
 constexpr VkDeviceSize kMostAlignment = 256;
 
 /// The structure in a buffer of its own.

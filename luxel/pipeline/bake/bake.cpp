@@ -68,8 +68,7 @@ Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progres
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings));
   const Result<Bake> ended = bake_scene(settings, progress, {.checkpoint = &checkpoint});
   const PartStore* parts = checkpoint.parts();
-  if (parts != nullptr && parts->has_failed())
-    return fail(ErrorCode::out_of_disk, "{}", parts->failure());
+  if (parts != nullptr && parts->has_failed()) return tl::unexpected(*parts->error());
   // The last stages are left to `luxel merge` in any case.
   LUXEL_CHECK(!ended);
   if (ended.error().code != ErrorCode::parts_missing) return tl::unexpected(ended.error());

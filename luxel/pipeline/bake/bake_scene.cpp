@@ -4,8 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "luxel/base/deadline.h"
+#include "luxel/base/digest.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
@@ -140,6 +142,17 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
                light::collect_lights(bake.scene)};
 }
 
+/// Which texel each element is and where its rays begin. On another kind of machine a layout may
+/// come out differently, whose parts are of no use.
+uint64_t digest_of(const atlas::TexelMap& map, const transport::Elements& elements) {
+  Digest digest;
+  digest.add("layout"), digest.add(map.resolution);
+  for (const atlas::Texel& texel : map.texels) digest.add(uint32_t(texel.x) << 16 | texel.y);
+  digest.add(std::span(std::as_const(elements.position)));
+  digest.add(std::span(std::as_const(elements.normal)));
+  return digest.value();
+}
+
 /// What a solver tells of a bake that is watched.
 SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& in) {
   SolveObserver out;
@@ -162,8 +175,9 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
-  const SolveStores stores{keepers.checkpoint ? keepers.checkpoint->parts() : nullptr,
-                           keepers.cache, keepers.device};
+  PartStore* parts = keepers.checkpoint ? keepers.checkpoint->parts() : nullptr;
+  if (parts) parts->set_context(digest_of(bake.map, ready.elements));
+  const SolveStores stores{parts, keepers.cache, keepers.device};
   SolveObserver observer;
   if (watcher.on_estimate)
     observer = observer_of(watcher, input);

@@ -13,12 +13,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
+tl::unexpected<Error> no_parts_in(const fs::path& place) {
+  return fail(ErrorCode::bad_input, "{} has no parts of a bake; luxel bake --part leaves some",
+              place.string());
+}
+
 Result<BakeSettings> settings_of_part(const fs::path& file) {
   LUXEL_TRY(const RecordFile found, RecordFile::open_to_read(file, RecordFile::Check::when_read));
   const nlohmann::json header = nlohmann::json::parse(found.header(), nullptr, false);
-  if (!header.is_object() || !header.contains("bake"))
-    return fail(ErrorCode::bad_input, "{} has no parts of a bake; luxel bake --part leaves some",
-                file.string());
+  if (!header.is_object() || !header.contains("bake")) return no_parts_in(file);
   BakeSettings out;
   if (const Status read = read_json(header["bake"], out); !read)
     return fail(read.error().code, "{}: {}", file.string(), read.error().message);
@@ -36,15 +39,15 @@ Result<BakeSettings> settings_of_parts(std::span<const fs::path> given) {
       continue;
     }
     const std::vector<fs::path> inside = part_files_in(one);
-    if (inside.empty())
-      return fail(ErrorCode::bad_input, "{} has no parts of a bake; luxel bake --part leaves some",
-                  one.string());
+    if (inside.empty()) return no_parts_in(one);
     files.insert(files.end(), inside.begin(), inside.end());
   }
   LUXEL_CHECK(!files.empty());
   LUXEL_TRY(BakeSettings out, settings_of_part(files.front()));
   out.parts = std::move(files);
-  out.threads = BakeSettings{}.threads, out.max_memory_bytes = BakeSettings{}.max_memory_bytes;
+  const BakeSettings usual;
+  out.threads = usual.threads, out.max_memory_bytes = usual.max_memory_bytes;
+  out.keep = usual.keep, out.resume = true;
   return out;
 }
 

@@ -76,7 +76,7 @@ std::string difference(const json& there, const json& here) {
     if (there.at("luxel") != here.at("luxel") || there.at("format") != here.at("format"))
       return fmt::format("made by {}, this is {}", version_of(there), version_of(here));
     const std::string setting = setting_difference(there.at("settings"), here.at("settings"), "");
-    if (!setting.empty() || !there.contains("scene")) return setting;
+    if (!setting.empty() || (!there.contains("scene") && !here.contains("scene"))) return setting;
     return scene::difference(items_of(there.at("scene")), items_of(here.at("scene")));
   } catch (const std::exception&) {  // whole by its digest, but not written by a bake
     return "its header is none of luxel's";
@@ -120,7 +120,7 @@ Result<std::optional<RecordFile>> Checkpoint::own_file(const std::string& header
         "{} is of a bake that did not end; this one starts from the beginning, --resume would go "
         "on with it",
         file.string());
-  } else if (settings_.resume && !is_part) {
+  } else if (settings_.resume && !is_part && settings_.parts.empty()) {
     note_ = fmt::format("there is no {} to resume from; the bake starts from the beginning",
                         file.string());
   }
@@ -134,7 +134,9 @@ Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& heade
   for (const fs::path& file : other_parts(settings_)) {
     LUXEL_TRY(RecordFile other, RecordFile::open_to_read(file));
     if (const std::string different = difference_of(other, header); !different.empty())
-      return fail(ErrorCode::bad_setting, "{} is of another bake: {}", file.string(), different);
+      return fail(ErrorCode::bad_setting,
+                  "{} is of another bake: {}; take it away, or give another --output",
+                  file.string(), different);
     out.push_back(std::move(other));
   }
   return out;
@@ -151,9 +153,10 @@ Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   PartStoreParams params{parts_file(settings_), header,
                          "--resume goes on from " + parts_file(settings_).string(),
                          settings_.checkpoint_s, start_};
+  if (!settings_.parts.empty()) params.way_on = "the same command goes on";
   if (!settings_.part.is_all()) {
     params.way_on = "the same command goes on from " + params.file.string();
-    params.share = {uint32_t(settings_.part.number - 1), uint32_t(settings_.part.of)};
+    params.share = PartShare{uint32_t(settings_.part.number - 1), uint32_t(settings_.part.of)};
     params.interval_s = std::max(params.interval_s, 1.0);
     params.start -= std::chrono::seconds(size_t(params.interval_s) + 1);  // from now on
   }

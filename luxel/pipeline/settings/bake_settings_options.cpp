@@ -235,7 +235,7 @@ Options<S> running_options() {
           "merge ends the bake")
           .key_is("")
           .unit("K/N")
-          .only(&Can::parts)
+          .never_without(&Can::parts)
           .leaves(Changes::nothing),
       BakeRows::toggle(
           "--keep", &S::keep,

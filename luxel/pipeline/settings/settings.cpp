@@ -153,7 +153,7 @@ std::string text_of(const PagesSetting& pages) {
 }
 
 Result<BakePart> parse_part(std::string_view text) {
-  constexpr int kMostParts = 100000;
+  constexpr int kMostParts = 500;  // a process has the files of all of them open
   const size_t slash = text.find('/');
   if (slash != std::string_view::npos) {
     const auto number = number_from<int>(text.substr(0, slash)),
@@ -161,9 +161,11 @@ Result<BakePart> parse_part(std::string_view text) {
     if (number && of && *number >= 1 && *number <= *of && *of <= kMostParts)
       return BakePart{*number, *of};
   }
-  return fail(ErrorCode::bad_setting,
-              "--part {} is no part of a bake; give its number and how many there are, as 3/16",
-              text);
+  return fail(
+      ErrorCode::bad_setting,
+      "--part {} is no part of a bake; give its number and how many there are, as 3/16; {} at "
+      "most",
+      text, kMostParts);
 }
 
 Result<PagesSetting> parse_pages(std::string_view text) {

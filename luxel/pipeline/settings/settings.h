@@ -46,9 +46,9 @@ struct PagesSetting {
 
 /// Which part of a bake is done: the rest is that of other processes (docs/guide/many-machines.md).
 struct BakePart {
-  int number = 1, of = 1;
+  int number = 0, of = 0;  ///< 0: all of it is done
 
-  bool is_all() const { return of == 1; }
+  bool is_all() const { return of == 0; }
 };
 
 /// Defaults of what solvers are asked for are gather's, the default solver's. Ranges, help and

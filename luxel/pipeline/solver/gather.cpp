@@ -83,7 +83,8 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
   progress.expect_at_end(after);
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
   // A trial is the processor's, and says nothing of a device.
-  const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0 && !stores.device;
+  const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0 && !stores.device &&
+                     settings.part.is_all();
   if (!trial && settings.time_budget_s <= 0) return {};
   LUXEL_TRY(const gather::Forecast forecast,
             gather::forecast(in, params, own, kTrialPart, progress));

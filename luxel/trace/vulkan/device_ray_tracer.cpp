@@ -91,8 +91,11 @@ Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device, const 
 
 Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device,
                                                const scene::Scene& scene) {
-  LUXEL_TRY(const HierarchyKind kind, faster_hierarchy(device));
-  return build(device, scene, kind);
+  const HierarchyKind kind = faster_hierarchy(device);
+  auto built = build(device, scene, kind);
+  if (built || kind != HierarchyKind::driver) return built;
+  // What the driver's form cannot have, luxel's own may.
+  return build(device, scene, own_hierarchy(device));
 }
 
 DeviceWorld DeviceRayTracer::world() const {

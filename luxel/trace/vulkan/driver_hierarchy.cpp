@@ -9,6 +9,8 @@ namespace luxel::trace {
 namespace {
 
 constexpr std::string_view kWhat = "the driver's boxes around triangles";
+/// Each is an allocation of its own, of which drivers give some 4000.
+constexpr size_t kMostParts = 1000;
 constexpr size_t kMostPlaces = (size_t(1) << 24) - 1;  // instanceCustomIndex has 24 bits
 
 Vec3 centre(const DeviceTriangle& t) { return (t.a + t.b + t.c) * (1.0f / 3); }
@@ -101,9 +103,14 @@ Result<DriverAcceleration> accelerate(gpu::Commands& commands, const DriverHiera
   // A corner and the number beside it.
   constexpr uint32_t kCornerBytes = sizeof(DeviceTriangle) / 3;
   const auto geometry = [&](uint32_t first, uint32_t end, bool are_opaque) {
-    return gpu::AcceleratedTriangles{triangles.address + first * sizeof(DeviceTriangle),
-                                     end - first, kCornerBytes, are_opaque};
+    // Also where there are none, the address is one of the buffer.
+    const VkDeviceSize offset = first < end ? first * sizeof(DeviceTriangle) : 0;
+    return gpu::AcceleratedTriangles{triangles.address + offset, end - first, kCornerBytes,
+                                     are_opaque};
   };
+  if (hierarchy.parts.size() > kMostParts)
+    return fail(ErrorCode::unsupported, "drivers are given at most {} meshes, not {}", kMostParts,
+                hierarchy.parts.size());
   DriverAcceleration out;
   for (const DriverPart& p : hierarchy.parts) {
     const gpu::AcceleratedTriangles both[] = {geometry(p.first, p.first_open, true),

@@ -33,8 +33,8 @@ struct DriverHierarchy {
   bool has_instances = false;
 };
 
-/// Triangles of a part at most. A data-centre GPU sorts as many in some 20 ms: no driver takes that
-/// for a device that hangs.
+/// Triangles of a part at most: so few that no driver should be busy with one for long. Not
+/// measured.
 inline constexpr size_t kMostInPart = size_t(1) << 21;
 
 /// Errors: those of stored_triangles(), 2^24 instances or more (ErrorCode::unsupported).
@@ -47,8 +47,8 @@ struct DriverAcceleration {
   gpu::Acceleration world;  ///< of the parts, where they stand
 };
 
-/// `triangles` has DriverHierarchy::triangles; it must outlive what is made. Errors: no memory, the
-/// device is lost.
+/// `triangles` has DriverHierarchy::triangles; it must outlive what is made. Errors: more than a
+/// thousand parts (ErrorCode::unsupported), no memory, the device is lost.
 Result<DriverAcceleration> accelerate(gpu::Commands& commands, const DriverHierarchy& hierarchy,
                                       const gpu::Buffer& triangles);
 

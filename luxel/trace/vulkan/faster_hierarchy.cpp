@@ -65,13 +65,13 @@ HierarchyKind faster_of(const std::vector<HierarchyRate>& measured) {
   return best.kind;
 }
 
-Result<HierarchyKind> faster_hierarchy(const gpu::Device& device) {
+HierarchyKind faster_hierarchy(const gpu::Device& device) {
   if (!device.has_ray_queries || device.type == VK_PHYSICAL_DEVICE_TYPE_CPU)
     return own_hierarchy(device);
   // As many as fill a large GPU.
   constexpr size_t kRays = size_t(1) << 18;
-  LUXEL_TRY(const std::vector<HierarchyRate> measured, measure_hierarchies(device, kRays));
-  return faster_of(measured);
+  const auto measured = measure_hierarchies(device, kRays);
+  return measured ? faster_of(*measured) : own_hierarchy(device);
 }
 
 }  // namespace luxel::trace

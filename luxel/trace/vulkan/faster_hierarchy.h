@@ -20,9 +20,8 @@ struct HierarchyRate {
 Result<std::vector<HierarchyRate>> measure_hierarchies(const gpu::Device& device, size_t rays);
 
 /// The kind for scenes on this device. The driver's is taken where it has been measured now to be
-/// clearly faster, and never where a processor plays the device. Errors: no memory, the device is
-/// lost.
-Result<HierarchyKind> faster_hierarchy(const gpu::Device& device);
+/// clearly faster, and never where a processor plays the device or the measurement fails.
+HierarchyKind faster_hierarchy(const gpu::Device& device);
 /// The rule: `measured` has luxel's own first, then the driver's if there is one.
 HierarchyKind faster_of(const std::vector<HierarchyRate>& measured);
 

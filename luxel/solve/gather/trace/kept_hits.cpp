@@ -1,6 +1,7 @@
 #include "luxel/solve/gather/trace/kept_hits.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "luxel/base/bytes.h"
 #include "luxel/base/digest.h"
@@ -35,6 +36,24 @@ bool is_sound(const HitTile& tile, uint32_t places) {
                      [&](const StoredHit& hit) { return hit.base() < places; });
 }
 
+/// Whether what a round is said to have made of elements [begin, end) of `hits` can be: later
+/// stages index by it. Files of parts come from other machines.
+bool can_follow(const TracedHits& hits, const TracedHits& found, std::span<const uint16_t> target,
+                size_t begin, size_t end) {
+  const size_t round = hits.rounds.size();
+  for (size_t i = begin, k = 0; i < end; ++i, ++k) {
+    const bool is_new = target[i] > hits.samples[i];
+    const bool is_counted = found.samples[k] == std::max(hits.samples[i], target[i]) &&
+                            found.last_round[k] == (is_new ? round : hits.last_round[i]) &&
+                            found.first_round[k] == hits.first_round[i] &&
+                            found.guided[k] == hits.guided[i];
+    const bool is_light = is_finite(found.sky[k]) && std::isfinite(found.sky_luminance2[k]) &&
+                          std::isfinite(found.sky_first_less_second[k]);
+    if (!is_counted || !is_light) return false;
+  }
+  return std::ranges::all_of(found.sky_by_layer, [](Rgb l) { return is_finite(l); });
+}
+
 }  // namespace
 
 KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
@@ -67,26 +86,25 @@ KeptEntries keep_tile(const KeptStage& kept, size_t begin, size_t end, const Tra
 }
 
 std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t end, uint32_t places,
-                                   TracedHits& hits) {
+                                   std::span<const uint16_t> target, TracedHits& hits) {
   const size_t part = begin / kTileElements;
   const auto bytes = kept.find(part);
   if (!bytes) return std::nullopt;
   FoundTile out;
   ByteReader in{*bytes};
   out.tile.rays = in.get_value<uint64_t>();
-  ByteReader arrays = in;
-  for_each_array(hits, [&](const auto& array, size_t per_element) {
-    const size_t size = part_of(array, per_element, begin, end).size_bytes();
-    in.ok = in.ok && size <= in.bytes.size();
-    if (in.ok) in.bytes = in.bytes.subspan(size);
-  });
+  const size_t layers = hits.sky_by_layer.size() / std::max<size_t>(hits.size(), 1);
+  TracedHits counted = no_hits(end - begin, layers);
+  for_each_array(counted, [&](auto& array, size_t) { in.get(std::span(array)); });
   HitTile& tile = out.tile.rays_met.hits;
   tile.end.resize(end - begin);
   in.get(std::span(tile.end));
   if (!in.ok || in.bytes.size() != size_t(tile.end.back()) * sizeof(StoredHit)) return std::nullopt;
   tile.entries.resize(tile.end.back());
   in.get(std::span(tile.entries));
-  if (!is_sound(tile, places)) return std::nullopt;
+  if (!is_sound(tile, places) || !can_follow(hits, counted, target, begin, end))
+    return std::nullopt;
+  ByteReader arrays{std::span(*bytes).subspan(sizeof(uint64_t))};
   for_each_array(hits, [&](auto& array, size_t per_element) {
     arrays.get(part_of(array, per_element, begin, end));
   });

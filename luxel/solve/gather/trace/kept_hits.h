@@ -28,8 +28,9 @@ struct FoundTile {
   TracedTile tile;
   KeptEntries entries;
 };
-/// A tile that was kept, and into `hits` what it counted. `places`: StoredHit::base() is below.
+/// A tile that was kept, and into `hits` what it counted; nothing where it cannot be of a round
+/// that takes `hits` on to `target`. `places`: StoredHit::base() is below.
 std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t end, uint32_t places,
-                                   TracedHits& hits);
+                                   std::span<const uint16_t> target, TracedHits& hits);
 
 }  // namespace luxel::gather

@@ -104,20 +104,20 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
 }
 
 /// Does a share of a solution. Returns how many parts are left to others.
-uint64_t do_share(const Room& room, const GatherParams& params, PartShare share,
+uint64_t do_share(const Room& room, const GatherParams& params, std::optional<PartShare> share,
                   const std::vector<fs::path>& files) {
   Progress progress;
   std::vector<RecordFile> others;
   std::optional<RecordFile> own;
   for (size_t k = 0; k < files.size(); ++k) {
     if (!fs::exists(files[k])) continue;
-    if (k == share.number)
+    if (k == share->number)
       own = std::move(*RecordFile::open(files[k]));
     else
       others.push_back(std::move(*RecordFile::open_to_read(files[k])));
   }
   PartStore parts(
-      PartStoreParams{files[share.number], "", "", 1e-9,
+      PartStoreParams{files[share->number], "", "", 1e-9,
                       std::chrono::steady_clock::now() - std::chrono::seconds(1), share},
       progress, std::move(own), std::move(others));
   GatherStores stores;
@@ -144,7 +144,7 @@ TEST_F(KeptParts, AreSharedOutAndGiveTheSameBits) {
     for (int pass = 0; left > 0; ++pass) {
       ASSERT_LT(pass, 12);
       left = 0;
-      for (uint32_t k = 0; k < 3; ++k) left += do_share(*room, params, {k, 3}, files);
+      for (uint32_t k = 0; k < 3; ++k) left += do_share(*room, params, PartShare{k, 3}, files);
       std::vector<RecordFile> all;
       for (const fs::path& one : files) all.push_back(std::move(*RecordFile::open_to_read(one)));
       PartStore found(PartStoreParams{file("merged"), "", "", 0}, progress_, {}, std::move(all));

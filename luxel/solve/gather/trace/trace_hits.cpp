@@ -251,7 +251,7 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
     const size_t number = begin / kTileElements;
     const uint64_t planned = planned_samples(round.target, hits, begin, end);
     Status put;
-    if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, hits)) {
+    if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, round.target, hits)) {
       progress.skip(planned);
       rays += found->tile.rays;
       if (round.watch) round.watch->on_tile(begin, found->tile.rays_met.hits);

@@ -83,6 +83,20 @@ TEST_F(BakesInParts, GoOnFromEachOther) {
   EXPECT_EQ(merged(folder_.string()), at_once(more));
 }
 
+// An array of one task, and processes that begin at the same time.
+TEST_F(BakesInParts, MayBeOneOrRunTogether) {
+  const std::string more = scene_file("cornell-box.glb") + " --resolution 64 --samples 64";
+  EXPECT_EQ(done(1, 1, more)["parts_left"], 0);
+  const std::string expected = at_once(more);
+  EXPECT_EQ(merged((folder_ / "part-1-of-1.luxel").string()), expected);
+  fs::remove_all(folder_);
+  const auto quiet = [&](int number) { return luxel(part(number, 3, more)).code; };
+  std::thread first([&] { EXPECT_EQ(quiet(1), 0); }), second([&] { EXPECT_EQ(quiet(2), 0); });
+  EXPECT_EQ(quiet(3), 0);
+  first.join(), second.join();
+  EXPECT_EQ(merged(folder_.string()), expected);
+}
+
 // A part that is killed goes on where it stood; what no part has, merge does itself.
 TEST_F(BakesInParts, LoseNothingButWhatWasUnderWay) {
   const std::string more = scene_file("cornell-box.glb") + " --resolution 128 --samples 1024";
@@ -114,6 +128,7 @@ TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
   for (const std::string other : {"--keep", "--time-budget 5"})
     EXPECT_THAT(error(bake + " --part 1/2 " + other), HasSubstr("does not go together with"));
   EXPECT_THAT(error(bake + " --part 1/2 --solver hemicube"), HasSubstr("does not use --part"));
+  EXPECT_THAT(error(bake + " --part 1/2 --plan"), HasSubstr("leave --part out"));
   EXPECT_FALSE(fs::exists(folder_));
   done(1, 2, box + " --samples 4");
   EXPECT_THAT(
@@ -123,6 +138,9 @@ TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
               HasSubstr("part-1-of-2.luxel is of another"));
   const std::string to = " -o " + (scratch_.path / "x").string();
   EXPECT_THAT(error("merge " + scratch_.path.string() + to), HasSubstr("has no parts of a bake"));
+  ASSERT_EQ(shell("mkfifo " + (folder_ / "part-9-of-9.luxel").string()).code, 0);
+  EXPECT_THAT(error("merge " + folder_.string() + to), HasSubstr("is no file on a disk"));
+  fs::remove(folder_ / "part-9-of-9.luxel");
   EXPECT_THAT(error("merge " + scene_file("office.glb") + to), HasSubstr("is damaged at byte 0"));
   EXPECT_THAT(error("merge " + folder_.string() + to + " --scene " + scene_file("office.glb")),
               HasSubstr("is of another bake: "));

@@ -214,6 +214,28 @@ TEST_F(KeptParts, WithHitsOutsideTheMapAreMadeAgain) {
   expect_same(solve_with(*room, params, edited.get()), expected);
 }
 
+// Rounds and guides are looked up by what a tile counts, and means are divided by it. Files of
+// parts come from other machines.
+TEST_F(KeptParts, WithCountsThatCannotBeAreMadeAgain) {
+  const auto room = some_room();
+  const GatherParams params = some_params();
+  Gather expected;
+  {
+    const auto first = store("all");
+    expected = solve_with(*room, params, first.get());
+  }
+  // Of a tile of 256 elements: samples, last and first round, guided, and light that is no number.
+  for (const size_t at : {size_t(8), size_t(520), size_t(776), size_t(1032), size_t(3336)}) {
+    copy("all", "edited", RecordFile::open(file("all"))->keys(), [&](Bytes& bytes) {
+      if (bytes.size() < 20000) return;  // direct light
+      std::fill_n(bytes.begin() + ptrdiff_t(at), 4, std::byte{0xff});
+    });
+    const auto edited = store("edited", *RecordFile::open(file("edited")));
+    expect_same(solve_with(*room, params, edited.get()), expected);
+    EXPECT_GT(edited->parts_kept(), 0u) << "byte " << at << ": those tiles were made again";
+  }
+}
+
 // Other settings than the ones that parts were made with find nothing.
 TEST_F(KeptParts, AreFoundByWhatTheyWereMadeFrom) {
   const auto room = some_room();

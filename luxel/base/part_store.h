@@ -17,7 +17,7 @@
 namespace luxel {
 inline namespace base {
 
-/// Which parts a process works on, where several share a stage's parts out among themselves.
+/// The parts that a process works on, where several share those of a stage out.
 struct PartShare {
   uint32_t number = 0, of = 1;  ///< every `of`-th part, from `number` on
 

@@ -2,7 +2,6 @@
 // devices that have ray queries (Device::has_ray_queries).
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "luxel/gpu/commands.h"
@@ -28,12 +27,12 @@ struct AcceleratedTriangles {
 /// Mat34.
 using Placed = VkAccelerationStructureInstanceKHR;
 
-/// `parts` are its geometries, numbered from 0 on. The front of a triangle is where its corners
-/// turn left. `what` names it in messages. Errors: no memory, the device is lost.
+/// `parts` are its geometries, numbered from 0 on. `what` names it in messages. Errors: no memory,
+/// the device is lost.
 Result<Acceleration> accelerate(Commands& commands, std::span<const AcceleratedTriangles> parts,
                                 std::string_view what);
 
-/// Of any number of instances, also none; at most 2^24 - 1. Errors: as above.
+/// A hierarchy of instances, of none to 2^24 - 1. Errors: as above.
 Result<Acceleration> accelerate(Commands& commands, std::span<const Placed> placed,
                                 std::string_view what);
 

@@ -9,7 +9,7 @@
 
 namespace luxel::light {
 
-/// Which layer each light belongs to; nothing where light is not told apart.
+/// The layer that each light belongs to; nothing where light is not told apart.
 void add_to(Digest& digest, const LightLayers* layers);
 /// What light drawn with these parameters depends on.
 void add_to(Digest& digest, const DirectParams& params);

@@ -142,8 +142,8 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
                light::collect_lights(bake.scene)};
 }
 
-/// Which texel each element is and where its rays begin. On another kind of machine a layout may
-/// come out differently, whose parts are of no use.
+/// A digest of which texel each element is and where its rays begin. On another kind of machine a
+/// layout may come out differently, whose parts are of no use.
 uint64_t digest_of(const atlas::TexelMap& map, const transport::Elements& elements) {
   Digest digest;
   digest.add("layout"), digest.add(map.resolution);

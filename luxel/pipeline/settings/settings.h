@@ -44,7 +44,7 @@ struct PagesSetting {
   int count = 1;  ///< fixed
 };
 
-/// Which part of a bake is done: the rest is that of other processes (docs/guide/many-machines.md).
+/// The part of a bake that is done; other processes do the rest (docs/guide/many-machines.md).
 struct BakePart {
   int number = 0, of = 0;  ///< 0: all of it is done
 

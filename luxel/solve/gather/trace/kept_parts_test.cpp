@@ -46,6 +46,14 @@ class KeptParts : public WithFolder {
     }
   }
 
+  /// A solution whose parts are all in the file "all" then.
+  Gather solve_and_keep(const Room& room, const GatherParams& params) {
+    const auto parts = store("all");
+    GatherStores stores;
+    stores.parts = parts.get();
+    return solve(room, params, stores);
+  }
+
   Progress progress_;
 };
 
@@ -104,20 +112,20 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
 }
 
 /// Does a share of a solution. Returns how many parts are left to others.
-uint64_t do_share(const Room& room, const GatherParams& params, std::optional<PartShare> share,
+uint64_t do_share(const Room& room, const GatherParams& params, PartShare share,
                   const std::vector<fs::path>& files) {
   Progress progress;
   std::vector<RecordFile> others;
   std::optional<RecordFile> own;
   for (size_t k = 0; k < files.size(); ++k) {
     if (!fs::exists(files[k])) continue;
-    if (k == share->number)
+    if (k == share.number)
       own = std::move(*RecordFile::open(files[k]));
     else
       others.push_back(std::move(*RecordFile::open_to_read(files[k])));
   }
   PartStore parts(
-      PartStoreParams{files[share->number], "", "", 1e-9,
+      PartStoreParams{files[share.number], "", "", 1e-9,
                       std::chrono::steady_clock::now() - std::chrono::seconds(1), share},
       progress, std::move(own), std::move(others));
   GatherStores stores;
@@ -158,11 +166,7 @@ TEST_F(KeptParts, AreSharedOutAndGiveTheSameBits) {
 TEST_F(KeptParts, AreUsed) {
   const auto room = some_room();
   const GatherParams params = some_params();
-  Gather expected;
-  {
-    const auto first = store("all");
-    expected = solve_with(*room, params, first.get());
-  }
+  const Gather expected = solve_and_keep(*room, params);
   const std::vector<RecordKey> keys = RecordFile::open(file("all"))->keys();
   std::set<uint64_t> stages;
   for (const RecordKey& key : keys) stages.insert(key.stage);
@@ -183,11 +187,7 @@ TEST_F(KeptParts, AreUsed) {
 TEST_F(KeptParts, OfAnotherSizeAreMadeAgain) {
   const auto room = some_room();
   const GatherParams params = some_params();
-  Gather expected;
-  {
-    const auto first = store("all");
-    expected = solve_with(*room, params, first.get());
-  }
+  const Gather expected = solve_and_keep(*room, params);
   const std::vector<RecordKey> keys = RecordFile::open(file("all"))->keys();
   for (const bool longer : {false, true}) {
     copy("all", "edited", keys,
@@ -201,11 +201,7 @@ TEST_F(KeptParts, OfAnotherSizeAreMadeAgain) {
 TEST_F(KeptParts, WithHitsOutsideTheMapAreMadeAgain) {
   const auto room = some_room();
   const GatherParams params = some_params();
-  Gather expected;
-  {
-    const auto first = store("all");
-    expected = solve_with(*room, params, first.get());
-  }
+  const Gather expected = solve_and_keep(*room, params);
   copy("all", "edited", RecordFile::open(file("all"))->keys(), [&](Bytes& bytes) {
     if (bytes.size() < 20000) return;  // direct light
     std::fill(bytes.end() - sizeof(StoredHit), bytes.end(), std::byte{0xff});
@@ -219,12 +215,8 @@ TEST_F(KeptParts, WithHitsOutsideTheMapAreMadeAgain) {
 TEST_F(KeptParts, WithCountsThatCannotBeAreMadeAgain) {
   const auto room = some_room();
   const GatherParams params = some_params();
-  Gather expected;
-  {
-    const auto first = store("all");
-    expected = solve_with(*room, params, first.get());
-  }
-  // Of a tile of 256 elements: samples, last and first round, guided, and light that is no number.
+  const Gather expected = solve_and_keep(*room, params);
+  // Where a tile of 256 elements has samples, last and first round, guided, and light.
   for (const size_t at : {size_t(8), size_t(520), size_t(776), size_t(1032), size_t(3336)}) {
     copy("all", "edited", RecordFile::open(file("all"))->keys(), [&](Bytes& bytes) {
       if (bytes.size() < 20000) return;  // direct light
@@ -239,10 +231,7 @@ TEST_F(KeptParts, WithCountsThatCannotBeAreMadeAgain) {
 // Other settings than the ones that parts were made with find nothing.
 TEST_F(KeptParts, AreFoundByWhatTheyWereMadeFrom) {
   const auto room = some_room();
-  {
-    const auto first = store("all");
-    solve_with(*room, some_params(), first.get());
-  }
+  solve_and_keep(*room, some_params());
   GatherParams other = some_params();
   other.seed = 2;
   const auto again = store("all", *RecordFile::open(file("all")));

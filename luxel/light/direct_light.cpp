@@ -1,13 +1,13 @@
 #include "luxel/light/direct_light.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <optional>
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/share_out.h"
 #include "luxel/light/kept_light.h"
 #include "luxel/light/light_device.h"
 #include "luxel/light/shadow_rays.h"
@@ -172,23 +172,36 @@ KeptStage kept_stage(const DirectParams& params, std::span<const uint32_t> which
   return {params.parts, digest.value()};
 }
 
+/// A part as bytes: the number of its rays, and its light.
+void put_part(std::span<const uint32_t> which, const DirectLight& direct, uint64_t rays,
+              ByteWriter& out) {
+  out.put_value(rays);
+  put_light(direct, which, out);
+}
+
+/// Returns the number of rays.
+std::optional<uint64_t> get_part(ByteReader& in, std::span<const uint32_t> which,
+                                 DirectLight& direct) {
+  const uint64_t rays = in.get_value<uint64_t>();
+  if (!get_light(in, which, direct)) return std::nullopt;
+  return rays;
+}
+
 /// Returns the number of rays.
 std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
                                   std::span<const uint32_t> which, DirectLight& direct) {
   const auto bytes = kept.find(part);
   if (!bytes) return std::nullopt;
   ByteReader in{*bytes};
-  const uint64_t rays = in.get_value<uint64_t>();
-  if (!get_light(in, which, direct) || !in.ended_well()) return std::nullopt;
-  return rays;
+  const auto rays = get_part(in, which, direct);
+  return in.ended_well() ? rays : std::nullopt;
 }
 
 void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
                const DirectLight& direct, uint64_t rays) {
   if (!kept.wants()) return;
   ByteWriter out;
-  out.put_value(rays);
-  put_light(direct, which, out);
+  put_part(which, direct, rays, out);
   kept.keep(part, out.bytes);
 }
 
@@ -245,49 +258,78 @@ Status light_again_on_device(const LitElements& in, std::span<const uint32_t> wh
 
 }  // namespace
 
+namespace {
+
+/// What looks at direct light again.
+struct LookAgain {
+  const LitElements& in;
+  const DirectParams& params;
+  DirectScene lit;
+  DirectLight& direct;
+
+  uint64_t look(std::span<const uint32_t> these) const;
+};
+
+/// One receiver after the other: its light, the variance of it, and the share of each layer.
+/// Returns the number of rays.
+uint64_t LookAgain::look(std::span<const uint32_t> these) const {
+  ShadowRayBatch batch;
+  uint64_t traced = 0;
+  for (const uint32_t i : these) {
+    const Receiver receiver = receiver_of(in.elements, i, params, lit.diagonal_m);
+    set_light(i, direct_light_at(lit, params, receiver, batch), direct);
+    if (params.layers) {
+      const std::span<Rgb> own = direct.layers_of(i, *params.layers);
+      std::ranges::fill(own, Rgb{});
+      add_light_by_layer(batch, 0, *params.layers, {1, 1, 1}, own);
+    }
+    traced += batch.rays.size();
+  }
+  return traced;
+}
+
+}  // namespace
+
 Status direct_light_again(const LitElements& in, std::span<const uint32_t> which,
                           const DirectParams& params, DirectLight& direct, Progress& progress) {
-  const transport::Elements& elements = in.elements;
-  LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == elements.size());
+  LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == in.elements.size());
   LUXEL_CHECK(direct.by_layer.size() ==
-              (params.layers ? params.layers->size() : 0) * elements.size());
+              (params.layers ? params.layers->size() : 0) * in.elements.size());
   if (in.device && !params.layers && params.sky_samples == 0)
     return light_again_on_device(in, which, params, direct, progress);
   const float diagonal_m = scene::world_bounds(in.scene).diagonal();
-  const DirectScene lit{in.scene, in.lights, in.tracer, diagonal_m};
+  const LookAgain again{in, params, {in.scene, in.lights, in.tracer, diagonal_m}, direct};
   const KeptStage kept = kept_stage(params, which);
-  std::atomic<uint64_t> rays{0};
+  const auto elements_of = [&](size_t part) {
+    const size_t begin = part * kPartElements;
+    return which.subspan(begin, std::min(kPartElements, which.size() - begin));
+  };
+  const size_t parts = (which.size() + kPartElements - 1) / kPartElements;
+  std::vector<uint64_t> rays(parts);
   progress.begin("direct light", which.size());
-  parallel_for(which.size(), kPartElements, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
-    // A part that an earlier run has kept is not sampled again.
-    if (const auto found = find_part(kept, begin / kPartElements, these, direct)) {
-      rays += *found;
-      return progress.skip(end - begin);
-    }
-    if (kept.leaves(begin / kPartElements)) return progress.skip(end - begin);
-    // One receiver after the other: its light, the variance of it, and the share of each layer.
-    ShadowRayBatch batch;
-    uint64_t traced = 0;
-    for (size_t k = begin; k < end; ++k) {
-      const size_t i = which[k];
-      set_light(i,
-                direct_light_at(lit, params, receiver_of(elements, i, params, diagonal_m), batch),
-                direct);
-      if (params.layers) {
-        const std::span<Rgb> own = direct.layers_of(i, *params.layers);
-        std::ranges::fill(own, Rgb{});
-        add_light_by_layer(batch, 0, *params.layers, {1, 1, 1}, own);
-      }
-      traced += batch.rays.size();
-    }
-    rays += traced;
-    keep_part(kept, begin / kPartElements, these, direct, traced);
-    progress.advance(end - begin);
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
-  direct.rays += rays;
+  LUXEL_TRY(const std::vector<uint32_t> own,
+            share_out(params.team, parts, progress, [&](size_t part) {
+              const std::span<const uint32_t> these = elements_of(part);
+              // A part that an earlier run has kept is not sampled again.
+              if (const auto found = find_part(kept, part, these, direct)) {
+                rays[part] = *found;
+                return progress.skip(these.size());
+              }
+              if (kept.leaves(part)) return progress.skip(these.size());
+              rays[part] = again.look(these);
+              keep_part(kept, part, these, direct, rays[part]);
+              progress.advance(these.size());
+            }));
+  const PieceExchange parts_of_team{
+      parts,
+      [&](size_t part, ByteWriter& out) { put_part(elements_of(part), direct, rays[part], out); },
+      [&](size_t part, uint32_t, ByteReader& bytes) {
+        const auto got = get_part(bytes, elements_of(part), direct);
+        rays[part] = got.value_or(0);
+        return got.has_value();
+      }};
+  LUXEL_TRY_STATUS(exchange(params.team, own, parts_of_team, progress));
+  direct.rays += std::accumulate(rays.begin(), rays.end(), uint64_t(0));
   return {};
 }
 

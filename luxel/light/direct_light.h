@@ -9,6 +9,7 @@
 #include "luxel/base/part_store.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/lights.h"
 #include "luxel/scene/scene.h"
@@ -29,6 +30,7 @@ struct DirectParams {
   /// the bright texels of an environment count in any case.
   int sky_samples = 0;
   PartStore* parts = nullptr;           ///< where finished parts are kept and found; null: nowhere
+  Team* team = nullptr;                 ///< whose members share parts out; null: none
   const LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 

@@ -1,13 +1,13 @@
 #include "luxel/light/supersample.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <optional>
 
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/light/kept_light.h"
 #include "luxel/light/lit_points.h"
 #include "luxel/light/uneven_texels.h"
@@ -118,29 +118,44 @@ KeptStage kept_stage(const SupersampleParams& params, std::span<const uint32_t> 
   return {params.direct.parts, digest.value()};
 }
 
-/// Returns the number of rays; fills one flag per texel, whether it was averaged.
-std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
-                                  std::span<const uint32_t> which, std::span<uint8_t> is_averaged,
-                                  DirectLight& direct) {
-  const auto bytes = kept.find(part);
-  if (!bytes) return std::nullopt;
-  ByteReader in{*bytes};
+/// A part of the texels.
+struct AveragedPart {
+  std::span<const uint32_t> which;
+  std::span<uint8_t> is_averaged;  ///< one flag per texel
+};
+
+/// A part as bytes: the number of its rays, which texels were averaged, and their light.
+void put_part(const AveragedPart& part, const DirectLight& direct, uint64_t rays, ByteWriter& out) {
+  out.put_value(rays);
+  out.put(std::span<const uint8_t>(part.is_averaged));
+  put_light(direct, part.which, out);
+}
+
+/// Returns the number of rays.
+std::optional<uint64_t> get_part(ByteReader& in, const AveragedPart& part, DirectLight& direct) {
   const uint64_t rays = in.get_value<uint64_t>();
-  std::vector<uint8_t> flags(is_averaged.size());
+  std::vector<uint8_t> flags(part.is_averaged.size());
   in.get(std::span(flags));
-  if (!in.ok || !get_light(in, which, direct)) return std::nullopt;
-  std::copy(flags.begin(), flags.end(), is_averaged.begin());
+  if (!in.ok || !get_light(in, part.which, direct)) return std::nullopt;
+  std::copy(flags.begin(), flags.end(), part.is_averaged.begin());
   return rays;
 }
 
-void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
-               std::span<const uint8_t> is_averaged, const DirectLight& direct, uint64_t rays) {
+/// Returns the number of rays.
+std::optional<uint64_t> find_part(const KeptStage& kept, size_t number, const AveragedPart& part,
+                                  DirectLight& direct) {
+  const auto bytes = kept.find(number);
+  if (!bytes) return std::nullopt;
+  ByteReader in{*bytes};
+  return get_part(in, part, direct);
+}
+
+void keep_part(const KeptStage& kept, size_t number, const AveragedPart& part,
+               const DirectLight& direct, uint64_t rays) {
   if (!kept.wants()) return;
   ByteWriter out;
-  out.put_value(rays);
-  out.put(is_averaged);
-  put_light(direct, which, out);
-  kept.keep(part, out.bytes);
+  put_part(part, direct, rays, out);
+  kept.keep(number, out.bytes);
 }
 
 /// What averages light over the points of some texels.
@@ -155,6 +170,11 @@ struct Averaging {
   std::vector<uint8_t> near_back_faces, is_averaged;
 
   LightAsked asked() const { return {samples_per_point(params.direct.samples)}; }
+  AveragedPart part(size_t number) {
+    const size_t first = number * kSupersampleGrain;
+    const size_t count = std::min(kSupersampleGrain, which.size() - first);
+    return {which.subspan(first, count), std::span(is_averaged).subspan(first, count)};
+  }
   uint64_t begin(size_t k, PointBuffers& work);
   uint64_t end(size_t k, PointBuffers& work);
 };
@@ -217,47 +237,62 @@ Result<uint64_t> average_on_device(Averaging& averaging, Progress& progress) {
   LUXEL_TRY(const uint64_t rays,
             light_many_points(averaging.in, which.size(), size_t(averaging.params.points),
                               averaging.asked(), texels, progress));
-  for (size_t begin = 0; begin < which.size() && kept.wants(); begin += kSupersampleGrain) {
-    const size_t count = std::min(kSupersampleGrain, which.size() - begin);
-    keep_part(kept, begin / kSupersampleGrain, which.subspan(begin, count),
-              std::span(averaging.is_averaged).subspan(begin, count), averaging.direct,
-              rays * count / which.size());
+  for (size_t number = 0; number * kSupersampleGrain < which.size() && kept.wants(); ++number) {
+    const AveragedPart part = averaging.part(number);
+    keep_part(kept, number, part, averaging.direct, rays * part.which.size() / which.size());
   }
   return rays;
 }
 
-/// Averages by the processor, whose parts are kept. Returns the number of rays. Errors: cancelled.
+/// Averages the texels of a part by the processor. Returns the number of rays.
+uint64_t average_part(Averaging& averaging, const DirectScene& lit, size_t number) {
+  const size_t begin = number * kSupersampleGrain;
+  PointBuffers work;
+  uint64_t traced = 0;
+  for (size_t k = begin; k < begin + averaging.part(number).which.size(); ++k) {
+    work.receivers.clear();
+    traced += averaging.begin(k, work);
+    if (work.receivers.empty()) continue;
+    light_receivers(lit, averaging.asked(), work);
+    traced += work.batch.rays.size() + averaging.end(k, work);
+  }
+  return traced;
+}
+
+/// Averages by the processor, whose parts are kept and shared out. Returns the number of rays.
+/// Errors: cancelled, another member of the team gives up.
 Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
   const TexelScene& in = averaging.in;
-  const std::span<const uint32_t> which = averaging.which;
+  DirectLight& direct = averaging.direct;
   const DirectScene lit{in.scene, in.lights, in.tracer, averaging.place.diagonal_m};
-  const KeptStage kept = kept_stage(averaging.params, which, averaging.direct);
-  std::atomic<uint64_t> rays{0};
-  parallel_for(which.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
-    const auto averaged = std::span(averaging.is_averaged).subspan(begin, end - begin);
-    const size_t part = begin / kSupersampleGrain;
-    if (const auto found = find_part(kept, part, these, averaged, averaging.direct)) {
-      rays += *found;
-      return progress.skip(end - begin);
-    }
-    if (kept.leaves(part)) return progress.skip(end - begin);
-    PointBuffers work;
-    uint64_t traced = 0;
-    for (size_t k = begin; k < end; ++k) {
-      work.receivers.clear();
-      traced += averaging.begin(k, work);
-      if (work.receivers.empty()) continue;
-      light_receivers(lit, averaging.asked(), work);
-      traced += work.batch.rays.size() + averaging.end(k, work);
-    }
-    rays += traced;
-    keep_part(kept, part, these, averaged, averaging.direct, traced);
-    progress.advance(end - begin);
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
-  return uint64_t(rays);
+  const KeptStage kept = kept_stage(averaging.params, averaging.which, direct);
+  Team* team = averaging.params.direct.team;
+  const size_t parts = (averaging.which.size() + kSupersampleGrain - 1) / kSupersampleGrain;
+  std::vector<uint64_t> rays(parts);
+  LUXEL_TRY(const std::vector<uint32_t> own,
+            share_out(team, parts, progress, [&](size_t number) {
+              const AveragedPart part = averaging.part(number);
+              if (const auto found = find_part(kept, number, part, direct)) {
+                rays[number] = *found;
+                return progress.skip(part.which.size());
+              }
+              if (kept.leaves(number)) return progress.skip(part.which.size());
+              rays[number] = average_part(averaging, lit, number);
+              keep_part(kept, number, part, direct, rays[number]);
+              progress.advance(part.which.size());
+            }));
+  const PieceExchange parts_of_team{
+      parts,
+      [&](size_t number, ByteWriter& out) {
+        put_part(averaging.part(number), direct, rays[number], out);
+      },
+      [&](size_t number, uint32_t, ByteReader& bytes) {
+        const auto got = get_part(bytes, averaging.part(number), direct);
+        rays[number] = got.value_or(0);
+        return got.has_value();
+      }};
+  LUXEL_TRY_STATUS(exchange(team, own, parts_of_team, progress));
+  return std::accumulate(rays.begin(), rays.end(), uint64_t(0));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "luxel/atlas/neighbours.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/share_out.h"
 #include "luxel/light/lit_points.h"
 
 namespace luxel::light {
@@ -255,12 +256,19 @@ Result<UnevenTexels> texels_to_average(const TexelScene& in, std::span<const uin
   std::ranges::set_intersection(all, among, std::back_inserter(uneven));
   std::ranges::set_intersection(border_texels(in.atlas, in.map, uneven), among,
                                 std::back_inserter(borders));
-  LUXEL_TRY(const uint64_t rays, keep_uneven_at_borders(in, params, direct, borders, progress));
+  Team* const team = params.direct.team;
+  LUXEL_TRY(const uint64_t rays,
+            keep_in_shares(team, borders, progress, [&](std::vector<uint32_t>& some) {
+              return keep_uneven_at_borders(in, params, direct, some, progress);
+            }));
   std::ranges::merge(uneven, borders, std::back_inserter(known));
   // Flecks of sun between leaves are smaller than texels: the samples of a texel and of all its
   // neighbours can miss them. Soft light has none.
   std::vector<uint32_t> flecks = facing_punctual_lights(in, among, known);
-  LUXEL_TRY(const uint64_t of_flecks, keep_flecked(in, params, direct, flecks, progress));
+  LUXEL_TRY(const uint64_t of_flecks,
+            keep_in_shares(team, flecks, progress, [&](std::vector<uint32_t>& some) {
+              return keep_flecked(in, params, direct, some, progress);
+            }));
   std::ranges::merge(known, flecks, std::back_inserter(out.texels));
   out.rays = rays + of_flecks;
   return out;

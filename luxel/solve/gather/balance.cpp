@@ -43,6 +43,7 @@ Result<double> gathered_variance(const Request& in, const Progressive& light, Pr
               .split_variance = split,
               .only = chosen};
   LUXEL_TRY_STATUS(run_sweep(sent, light.hits, sweep, progress));
+  LUXEL_TRY_STATUS(give_variances(light.hits, variance, split, progress));
   return sum_of_visible(split, light.hits) * double(kElementsPerChecked);
 }
 

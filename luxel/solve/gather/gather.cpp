@@ -187,6 +187,8 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
                       const GatherParams& params, const GatherStores& stores,
                       const GatherObserver& observer, Progress& progress) {
   LUXEL_CHECK(!params.tells_direct || layers == nullptr);
+  LUXEL_CHECK(!stores.team || !(stores.device || stores.keep || stores.earlier ||
+                                (stores.parts && stores.parts->shares()) || observer.on_estimate));
   const auto start = Clock::now();
   const transport::OwnSides sides =
       transport::find_own_sides(scene.scene, scene.atlas, scene.map, scene.tracer);

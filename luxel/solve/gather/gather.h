@@ -11,6 +11,7 @@
 #include "luxel/base/part_store.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/light/light_estimate.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/supersample.h"
@@ -57,6 +58,9 @@ struct GatherStores {
   /// that share are worked on, and gather ends when all rays are known.
   PartStore* parts = nullptr;
   PartStore* keep = nullptr;  ///< where rays are kept for later bakes of the scene; null: nowhere
+  /// Whose members share the work out, each with `hit_memory_bytes` and files of its own. Not with
+  /// device, keep, earlier, a share of the parts, or an observer of estimates. Null: nobody does.
+  Team* team = nullptr;
   /// Lights places, traces rays and has their hits; null: the processor. Not with keep, earlier or
   /// light that is told apart.
   RayDevice* device = nullptr;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/base/share_out.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/guide.h"
 #include "luxel/solve/gather/steps.h"
@@ -140,7 +141,8 @@ Status find_guide(const Request& in, Progressive& light, Progress& progress) {
   if (!asks_for_guide(in, light)) return {};
   Progress own;  // its stages are not those of the bake
   LUXEL_TRY(light.hits.guide,
-            make_guide(in.scene, in.sides, {light.hits, in.behind, light.bounced.irradiance},
+            make_guide(in.scene, in.sides,
+                       {light.hits, in.behind, light.bounced.irradiance, in.stores.team},
                        in.params.seed, own));
   return stopped(progress);
 }
@@ -171,7 +173,8 @@ Result<bool> next_round(const Request& in, double seconds_left, Progressive& lig
   // A time budget takes both kinds of rays back to what it can pay for, and ends the rounds.
   double affordable = INFINITY;
   if (params.seconds > 0) {
-    affordable = affordable_rays(light, seconds_left);
+    LUXEL_TRY(affordable,
+              first_of(in.stores.team, affordable_rays(light, seconds_left), progress));
     if (affordable < kSmallestRound * double(light.hits.rays)) return false;
   }
   const bool is_rms = params.error_measure == ErrorMeasure::rms;

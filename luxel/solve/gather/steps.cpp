@@ -90,6 +90,7 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
       .layers = in.layers,
       .followed_layers = in.followed_layers,
       .watch = watch,
+      .team = in.stores.team,
   };
   const auto start = Clock::now();
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);

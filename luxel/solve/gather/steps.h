@@ -37,6 +37,7 @@ struct Request {
             .direct = {.samples = params.direct_samples,
                        .seed = params.seed,
                        .parts = stores.parts,
+                       .team = stores.team,
                        .layers = layers}};
   }
 };

@@ -11,6 +11,7 @@
 #include "luxel/light/light_layers.h"
 #include "luxel/solve/gather/bounce/convergence.h"
 #include "luxel/solve/gather/bounce/subsampled_hits.h"
+#include "luxel/solve/gather/rays/own_tiles.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
 
 namespace luxel::gather {
@@ -213,8 +214,8 @@ void sweep_subsampled(const LayerSweep& sweep, const TracedHits& hits,
   }
 }
 
-/// Errors: the file of hits cannot be read, cancelled.
-Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
+/// A sweep over the hits that are here. Errors: the file of hits cannot be read, cancelled.
+Status sweep_own(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
   if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
       const auto sweep_one = sweep.stride > 1 ? sweep_layers_sparsely : sweep_layers_of_tile;
@@ -225,6 +226,32 @@ Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress
                        [&](size_t t, const SubsampledHits::Tile& tile) {
                          sweep_subsampled(sweep, hits, tile, t * kTileElements);
                        });
+}
+
+/// Gives all members of a team what each has swept. Errors: those of exchange().
+Status give_swept(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
+  const auto for_each = [&](size_t t, const auto& visit) {
+    const size_t begin = t * kTileElements, end = std::min(begin + kTileElements, hits.size());
+    for (size_t i = begin; i < end; ++i)
+      visit(sweep.light.of(i, sweep.block.first, sweep.block.count));
+  };
+  return exchange(hits.team, own_tiles(hits),
+                  {hits.owner.size(),
+                   [&](size_t t, ByteWriter& out) {
+                     for_each(t, [&](std::span<Rgb> light) { out.put(std::as_bytes(light)); });
+                   },
+                   [&](size_t t, uint32_t, ByteReader& in) {
+                     for_each(t,
+                              [&](std::span<Rgb> light) { in.get(std::as_writable_bytes(light)); });
+                     return in.ok;
+                   }},
+                  progress);
+}
+
+/// Errors: the file of hits cannot be read, cancelled, another member of the team gives up.
+Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
+  LUXEL_TRY_STATUS(sweep_own(sweep, hits, progress));
+  return hits.team ? give_swept(sweep, hits, progress) : Status();
 }
 
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.

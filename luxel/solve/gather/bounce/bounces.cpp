@@ -54,6 +54,7 @@ struct Bouncing {
   Result<double> look_ahead(std::vector<Rgb> change, size_t stride, double tolerance);
   Status settle(size_t stride, float tolerance);
   Status settle_guess(size_t sparse, const BounceParams& params);
+  Result<Bounced> finished();
 };
 
 /// A copy of a quarter would take too much beside the hits.
@@ -167,6 +168,12 @@ Status Bouncing::settle_guess(size_t sparse, const BounceParams& params) {
   return {};
 }
 
+/// Errors: another member of the team gives up, cancelled.
+Result<Bounced> Bouncing::finished() {
+  LUXEL_TRY_STATUS(give_variances(hits, out.variance, out.split_variance, progress));
+  return std::move(out);
+}
+
 }  // namespace
 
 double copy_bytes(double hit_bytes, int samples) {
@@ -204,7 +211,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     const Result<double> change = bouncing.sweep(1);
     if (!change) return tl::unexpected(change.error());
   }
-  if (params.bounces >= 0) return std::move(bouncing.out);
+  if (params.bounces >= 0) return bouncing.finished();
   // A device has no sparse sweeps: those over all of its rays take about as long as the map needs
   // to get there.
   const bool may_be_sparse = !hits.samples.empty() && !hits.device;
@@ -212,14 +219,14 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   const size_t sparse = sparsest_stride(fewest);
   if (guessed && sparse > 1) {
     LUXEL_TRY_STATUS(bouncing.settle_guess(sparse, params));
-    return std::move(bouncing.out);
+    return bouncing.finished();
   }
   for (const size_t stride : kStrides) {
     if (stride > 1 && (guessed || !has_sweeps_of(stride, fewest))) continue;
     LUXEL_TRY_STATUS(bouncing.settle(stride, params.tolerance));
     bouncing.subsampled.reset();
   }
-  return std::move(bouncing.out);
+  return bouncing.finished();
 }
 
 Status bounce_by_bounce(const atlas::TexelMap& map, const transport::Elements& elements,

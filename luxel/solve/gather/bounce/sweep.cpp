@@ -5,6 +5,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/solve/gather/rays/own_tiles.h"
 #include "luxel/solve/gather/rays/ray_device.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
 
@@ -142,9 +143,10 @@ Status sweep_on_device(const RadiosityMap& m, const TracedHits& hits, Sweep& swe
 
 }  // namespace
 
-Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
-  sweep.change2.assign(tile_count(hits), 0.0);
-  if (hits.device) return sweep_on_device(m, hits, sweep, progress);
+namespace {
+
+/// A sweep over the hits that are here. Errors: the file of hits cannot be read, cancelled.
+Status sweep_own(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
   if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
       const size_t first = t * kTileElements;
@@ -156,6 +158,36 @@ Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Pr
       *sweep.subsampled, progress, [&](size_t t, const SubsampledHits::Tile& tile) {
         sweep.change2[t] = sweep_subsampled(m, hits, tile, t * kTileElements, sweep);
       });
+}
+
+/// Gives all members of a team what each has swept. Errors: those of exchange().
+Status give_swept(const TracedHits& hits, Sweep& sweep, Progress& progress) {
+  const auto light = [&](size_t t) { return of_tile(sweep.irradiance, t, hits.size()); };
+  return exchange(hits.team, own_tiles(hits),
+                  {sweep.change2.size(),
+                   [&](size_t t, ByteWriter& out) {
+                     out.put_value(sweep.change2[t]), out.put(std::as_bytes(light(t)));
+                   },
+                   [&](size_t t, uint32_t, ByteReader& in) {
+                     sweep.change2[t] = in.get_value<double>();
+                     in.get(std::as_writable_bytes(light(t)));
+                     return in.ok;
+                   }},
+                  progress);
+}
+
+}  // namespace
+
+Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
+  sweep.change2.assign(tile_count(hits), 0.0);
+  if (hits.device) return sweep_on_device(m, hits, sweep, progress);
+  LUXEL_TRY_STATUS(sweep_own(m, hits, sweep, progress));
+  return hits.team ? give_swept(hits, sweep, progress) : Status();
+}
+
+Status give_variances(const TracedHits& hits, std::span<float> variance,
+                      std::span<float> split_variance, Progress& progress) {
+  return give_own_tiles(hits, 1, progress, variance, split_variance);
 }
 
 }  // namespace luxel::gather

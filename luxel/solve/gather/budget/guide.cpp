@@ -4,8 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/sides.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/trace/sort_rays.h"
@@ -21,6 +21,8 @@ constexpr size_t kMostRaysPerCell = 16, kFewestRaysPerCell = 8;
 /// So many rays with the mean variance of all cells are added to those of each: what few rays have
 /// seen of a cell may not be all that there is.
 constexpr double kPriorRays = 1;
+/// Groups that a thread, or a member of a team, takes at a time.
+constexpr size_t kGroupsPerPiece = 4;
 /// Any number: it sets these random numbers apart from those of the light.
 constexpr uint64_t kGuideSeed = 0x6d1de;
 
@@ -140,13 +142,30 @@ Result<Guide> make_guide(const light::TexelScene& in, const transport::OwnSides&
                         hash64(seed, kGuideSeed)};
   Guide out;
   out.groups.resize(groups.elements.size());
-  parallel_for(out.groups.size(), 4, [&](size_t begin, size_t end) {
-    GuideBuffers buffers;
-    for (size_t g = begin; g < end && !progress.cancelled(); ++g) {
-      out.groups[g] = guided_group(deviations_of(from, groups.elements[g], buffers));
-    }
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
+  const auto of_piece = [&](size_t piece) {
+    const size_t begin = piece * kGroupsPerPiece;
+    return std::pair(begin, std::min(begin + kGroupsPerPiece, out.groups.size()));
+  };
+  const size_t pieces = (out.groups.size() + kGroupsPerPiece - 1) / kGroupsPerPiece;
+  LUXEL_TRY(const std::vector<uint32_t> own,
+            share_out(light.team, pieces, progress, [&](size_t piece) {
+              GuideBuffers buffers;
+              const auto [begin, end] = of_piece(piece);
+              for (size_t g = begin; g < end && !progress.cancelled(); ++g)
+                out.groups[g] = guided_group(deviations_of(from, groups.elements[g], buffers));
+            }));
+  const auto groups_of_piece = [&](size_t piece) {
+    const auto [begin, end] = of_piece(piece);
+    return std::span(out.groups).subspan(begin, end - begin);
+  };
+  LUXEL_TRY_STATUS(exchange(
+      light.team, own,
+      {pieces, [&](size_t piece, ByteWriter& bytes) { bytes.put(std::span<const GuidedGroup>(groups_of_piece(piece))); },
+       [&](size_t piece, uint32_t, ByteReader& bytes) {
+         bytes.get(groups_of_piece(piece));
+         return bytes.ok;
+       }},
+      progress));
   out.of_element = std::move(groups.of_element);
   return out;
 }

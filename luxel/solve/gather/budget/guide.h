@@ -21,10 +21,11 @@ struct LightToGuide {
   const TracedHits& hits;
   std::span<const StoredHit> behind;
   std::span<const Rgb> irradiance;  ///< E per element, after all bounces [W/m^2]
+  Team* team = nullptr;             ///< whose members share groups out; null: none
 };
 
 /// Shares of directions for groups of elements: at most 8 x 8 texels of one chart. Rays that tell
-/// them are no part of the light, which so is unbiased. Errors: cancelled.
+/// them are no part of the light, which so is unbiased. Errors: cancelled, another member gives up.
 Result<Guide> make_guide(const light::TexelScene& in, const transport::OwnSides& sides,
                          const LightToGuide& light, uint64_t seed, Progress& progress);
 

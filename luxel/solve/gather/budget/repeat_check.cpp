@@ -150,7 +150,8 @@ Result<LightAgain> light_again(const Repeated& in, Progress& progress) {
                               {.seed = direct.direct.seed,
                                .memory_limit_bytes = in.params.memory_limit_bytes,
                                .scratch_folder = in.params.scratch_folder,
-                               .follows_near = in.params.follows_near},
+                               .follows_near = in.params.follows_near,
+                               .team = direct.direct.team},
                               hits, progress));
   LUXEL_TRY(std::vector<Rgb> e, gather_from(in.sent, hits, again.irradiance, {}, progress));
   return LightAgain{std::move(again.irradiance), std::move(e)};

@@ -40,14 +40,14 @@ inline size_t tile_count(const TracedHits& hits) {
   return (hits.size() + kTileElements - 1) / kTileElements;
 }
 
-/// Calls take(t, tile) for each tile, on several threads. Errors: the file of hits cannot be read,
+/// Calls take(t, tile) for each tile that is here, on several threads. Errors: the file of hits cannot be read,
 /// cancelled.
 template <class Take>
 Status for_each_tile(const TracedHits& hits, Progress& progress, const Take& take) {
   std::mutex mutex;
   Status status;
   parallel_for(tile_count(hits), 1, [&](size_t t, size_t) {
-    if (progress.cancelled()) return;
+    if (progress.cancelled() || !has_tile(hits, t)) return;
     TileHits tile;
     if (const Status read = tile.read(hits, t); !read) {
       const std::lock_guard lock(mutex);

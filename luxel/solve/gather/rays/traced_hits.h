@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "luxel/base/bytes_per_entry.h"
+#include "luxel/base/team.h"
 #include "luxel/base/vec.h"
 #include "luxel/solve/gather/rays/cell_guide.h"
 #include "luxel/solve/gather/rays/hit_store.h"
@@ -19,6 +20,9 @@ struct TracedHits {
   std::vector<HitStore> rounds;
   /// Where the hits of all rounds are, whose stores are empty; null: in those.
   RayDevice* device = nullptr;
+  /// Who has traced them: each member has the hits of its tiles, in all rounds. Null: all are here.
+  Team* team = nullptr;
+  std::vector<uint32_t> owner;      ///< with a team, per tile, its member's rank
   std::vector<uint16_t> samples;    ///< per element, of all rounds that count
   std::vector<uint8_t> last_round;  ///< per element, that which added to it last
   /// Per element, the first round that counts: 0, or that in which its rays began anew; and the
@@ -64,6 +68,11 @@ inline constexpr uint64_t kTracedBytesPerElement =
 /// The part of it that gather() gives back when it knows which elements are enclosed.
 inline constexpr uint64_t kEndCountBytesPerElement =
     bytes_per_entry(&TracedHits::escaped, &TracedHits::met_double_sided_back);
+
+/// Whether the hits of a tile are here.
+inline bool has_tile(const TracedHits& hits, size_t tile) {
+  return !hits.team || hits.owner[tile] == hits.team->rank();
+}
 
 /// Whether an element lies inside a solid, under a floor or behind a wall (transport::is_hidden).
 inline bool is_hidden(const TracedHits& hits, size_t element) {

@@ -6,6 +6,7 @@
 #include "luxel/base/bytes.h"
 #include "luxel/base/digest.h"
 #include "luxel/light/kept_light.h"
+#include "luxel/solve/gather/rays/own_tiles.h"
 
 namespace luxel::gather {
 namespace {
@@ -18,12 +19,6 @@ void for_each_array(Hits& hits, const Visit& visit) {
   visit(hits.escaped, 1), visit(hits.met_back, 1), visit(hits.met_double_sided_back, 1);
   visit(hits.sky, 1), visit(hits.sky_luminance2, 1), visit(hits.sky_first_less_second, 1);
   visit(hits.sky_by_layer, hits.sky_by_layer.size() / std::max<size_t>(hits.size(), 1));
-}
-
-/// The values of elements [begin, end).
-template <class Array>
-auto part_of(Array& array, size_t per_element, size_t begin, size_t end) {
-  return std::span(array).subspan(begin * per_element, (end - begin) * per_element);
 }
 
 KeptEntries entries_at_end(const KeptStage& kept, size_t part, size_t bytes, const HitTile& tile) {
@@ -70,17 +65,27 @@ KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
   return {params.parts, digest.value()};
 }
 
-KeptEntries keep_tile(const KeptStage& kept, size_t begin, size_t end, const TracedTile& tile,
+void put_counts(const TracedHits& hits, size_t tile, ByteWriter& out) {
+  for_each_array(hits, [&](const auto& array, size_t per_element) {
+    out.put(of_tile(std::span(array), tile, hits.size(), per_element));
+  });
+}
+
+bool get_counts(ByteReader& in, size_t tile, TracedHits& hits) {
+  for_each_array(hits, [&](auto& array, size_t per_element) {
+    in.get(of_tile(std::span(array), tile, hits.size(), per_element));
+  });
+  return in.ok;
+}
+
+KeptEntries keep_tile(const KeptStage& kept, size_t part, const TracedTile& tile,
                       const TracedHits& hits) {
   if (!kept.wants()) return {};
   ByteWriter out;
   out.put_value(tile.rays);
-  for_each_array(hits, [&](const auto& array, size_t per_element) {
-    out.put(part_of(array, per_element, begin, end));
-  });
+  put_counts(hits, part, out);
   out.put(std::span(tile.rays_met.hits.end));
   out.put(std::span(tile.rays_met.hits.entries));
-  const size_t part = begin / kTileElements;
   if (!kept.keep(part, out.bytes)) return {};
   return entries_at_end(kept, part, out.bytes.size(), tile.rays_met.hits);
 }
@@ -105,9 +110,7 @@ std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t e
   if (!is_sound(tile, places) || !can_follow(hits, counted, target, begin, end))
     return std::nullopt;
   ByteReader arrays{std::span(*bytes).subspan(sizeof(uint64_t))};
-  for_each_array(hits, [&](auto& array, size_t per_element) {
-    arrays.get(part_of(array, per_element, begin, end));
-  });
+  get_counts(arrays, part, hits);
   out.entries = entries_at_end(kept, part, bytes->size(), tile);
   return out;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "luxel/base/bytes.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
@@ -19,9 +20,9 @@ struct TracedTile {
   uint64_t kept = 0;  ///< of an earlier bake, besides
 };
 
-/// Keeps the tile of elements [begin, end) and what `hits` counts for them. Returns where its
-/// entries stand then, if anywhere.
-KeptEntries keep_tile(const KeptStage& kept, size_t begin, size_t end, const TracedTile& tile,
+/// Keeps tile number `part` and what `hits` counts for its elements. Returns where its entries
+/// stand then, if anywhere.
+KeptEntries keep_tile(const KeptStage& kept, size_t part, const TracedTile& tile,
                       const TracedHits& hits);
 
 struct FoundTile {
@@ -32,5 +33,10 @@ struct FoundTile {
 /// that takes `hits` on to `target`. `places`: StoredHit::base() is below.
 std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t end, uint32_t places,
                                    std::span<const uint16_t> target, TracedHits& hits);
+
+/// What `hits` counts per element, for those of a tile.
+void put_counts(const TracedHits& hits, size_t tile, ByteWriter& out);
+/// That into `hits`. Returns whether there was enough.
+bool get_counts(ByteReader& in, size_t tile, TracedHits& hits);
 
 }  // namespace luxel::gather

@@ -4,14 +4,18 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 #include "luxel/base/buffer_pool.h"
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/sides.h"
 #include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/solve/gather/rays/own_tiles.h"
+#include "luxel/solve/gather/rays/tile_hits.h"
 #include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/follow_on.h"
 #include "luxel/solve/gather/trace/kept_hits.h"
@@ -234,50 +238,110 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileBuffers& tile_
                          known ? &tile_buffers.retraced : nullptr, buffers, hits, tile.rays_met);
 }
 
-/// Traces the round's elements into `store`. Errors: disk full.
-Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, TracedHits& hits,
-                   HitStore& store, Progress& progress) {
-  std::atomic<uint64_t> rays{0}, rays_kept{0};
-  BufferPool<TileBuffers> pool;
-  std::mutex mutex;
-  Status status;
-  const uint32_t places = places_of(round.ray_scene.atlas);
-  parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    if (round.watch) {
-      begin = round.watch->queue->next() * kTileElements;
-      end = std::min(begin + kTileElements, hits.size());
-    }
-    const size_t number = begin / kTileElements;
-    const uint64_t planned = planned_samples(round.target, hits, begin, end);
-    Status put;
-    if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, round.target, hits)) {
-      progress.skip(planned);
-      rays += found->tile.rays;
-      if (round.watch) round.watch->on_tile(begin, found->tile.rays_met.hits);
-      put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
-    } else if (kept.leaves(number)) {
-      progress.skip(planned);
-    } else {
-      TileBuffers buffers = pool.take();
-      TracedTile& tile = buffers.tile;
-      trace_tile(round, begin, end, buffers, hits, progress);
-      if (progress.cancelled()) return;
-      const KeptEntries entries = keep_tile(kept, begin, end, tile, hits);
-      keep_rays(keep, round.number, number, tile.rays_met);
-      rays += tile.rays, rays_kept += tile.kept;
-      if (round.watch) round.watch->on_tile(begin, tile.rays_met.hits);
-      put = store.put(number, std::move(tile.rays_met.hits), entries);
-      pool.give(std::move(buffers));
-    }
-    if (!put) {
-      const std::lock_guard lock(mutex);
-      if (status) status = put;
-      progress.request_cancel();
-    }
-  });
-  hits.rays += rays, hits.rays_kept += rays_kept;
-  return status;
+/// A round's way through its tiles, on several threads.
+struct TileRound {
+  const Round& round;
+  const KeptStage& kept;
+  PartStore* keep = nullptr;
+  TracedHits& hits;
+  HitStore& store;
+  Progress& progress;
+  uint32_t places = 0;
+  std::vector<uint64_t> rays;  ///< per tile
+  std::atomic<uint64_t> rays_kept{0};
+  BufferPool<TileBuffers> pool{};
+  std::mutex mutex{};
+  Status status{};
+
+  void make(size_t tile);
+  Status make_one(size_t tile);
+};
+
+/// Traces or finds a tile. Errors: disk full.
+Status TileRound::make_one(size_t number) {
+  const size_t begin = number * kTileElements, end = std::min(begin + kTileElements, hits.size());
+  const uint64_t planned = planned_samples(round.target, hits, begin, end);
+  if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, round.target, hits)) {
+    progress.skip(planned);
+    rays[number] = found->tile.rays;
+    if (round.watch) round.watch->on_tile(begin, found->tile.rays_met.hits);
+    return store.put(number, std::move(found->tile.rays_met.hits), found->entries);
+  }
+  if (kept.leaves(number)) {
+    progress.skip(planned);
+    return {};
+  }
+  TileBuffers buffers = pool.take();
+  TracedTile& tile = buffers.tile;
+  trace_tile(round, begin, end, buffers, hits, progress);
+  if (progress.cancelled()) return {};
+  const KeptEntries entries = keep_tile(kept, number, tile, hits);
+  keep_rays(keep, round.number, number, tile.rays_met);
+  rays[number] = tile.rays, rays_kept += tile.kept;
+  if (round.watch) round.watch->on_tile(begin, tile.rays_met.hits);
+  const Status put = store.put(number, std::move(tile.rays_met.hits), entries);
+  pool.give(std::move(buffers));
+  return put;
+}
+
+/// The work ends when a tile fails.
+void TileRound::make(size_t tile) {
+  const Status made = make_one(round.watch ? round.watch->queue->next() : tile);
+  if (made) return;
+  const std::lock_guard lock(mutex);
+  if (status) status = made;
+  progress.request_cancel();
+}
+
+/// Gives all members of the team what rays of own tiles have met, but for the hits. Errors: those of
+/// exchange().
+Status give_counts(Team* team, std::span<const uint32_t> own, TileRound& tiles) {
+  TracedHits& hits = tiles.hits;
+  return exchange(team, own,
+                  {tile_count(hits),
+                   [&](size_t t, ByteWriter& out) {
+                     out.put_value(tiles.rays[t]);
+                     put_counts(hits, t, out);
+                   },
+                   [&](size_t t, uint32_t rank, ByteReader& in) {
+                     hits.owner[t] = rank;
+                     tiles.rays[t] = in.get_value<uint64_t>();
+                     return get_counts(in, t, hits);
+                   }},
+                  tiles.progress);
+}
+
+/// Traces the round's elements into `store`. Whoever traces a tile of a team first has it in later
+/// rounds. Errors: disk full, cancelled, another member of the team gives up.
+Status trace_tiles(const Round& round, const TraceParams& params, const KeptStage& kept,
+                   TracedHits& hits, HitStore& store, Progress& progress) {
+  const size_t count = tile_count(hits);
+  Team* const team = params.team;
+  TileRound tiles{round,    kept,
+                  params.keep, hits,
+                  store,    progress,
+                  places_of(round.ray_scene.atlas), std::vector<uint64_t>(count)};
+  const auto make = [&](size_t tile) { tiles.make(tile); };
+  std::vector<uint32_t> own;
+  Status done;
+  if (hits.team) {
+    own = own_tiles(hits);
+    done = do_own(team, own, progress, make);
+  } else {
+    auto shared_out = share_out(team, count, progress, make);
+    if (shared_out) own = std::move(*shared_out);
+    else done = tl::unexpected(shared_out.error());
+  }
+  LUXEL_TRY_STATUS(tiles.status);
+  LUXEL_TRY_STATUS(done);
+  if (team && !hits.team) {
+    hits.team = team, hits.owner.assign(count, 0);
+    for (const uint32_t t : own) hits.owner[t] = team->rank();
+  }
+  LUXEL_TRY_STATUS(give_counts(team, own, tiles));
+  hits.rays += std::accumulate(tiles.rays.begin(), tiles.rays.end(), uint64_t(0));
+  hits.rays_kept += tiles.rays_kept;
+  return {};
 }
 
 }  // namespace
@@ -287,6 +351,8 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   const transport::Elements& elements = in.elements;
   LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
   LUXEL_CHECK(hits.rounds.size() < 256);
+  LUXEL_CHECK(!params.team || !(params.keep || params.earlier || params.watch));
+  LUXEL_CHECK(hits.rounds.empty() || hits.team == params.team);
   LUXEL_CHECK(hits.guide.of_element.empty() || !(params.keep || params.earlier || params.layers));
   LUXEL_CHECK(hits.sky_by_layer.size() ==
               elements.size() * (params.layers ? params.layers->size() : 0));
@@ -306,8 +372,7 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   const uint64_t number = hits.rounds.size();
   LUXEL_TRY_STATUS(trace_tiles({scene.rays(), elements, in.tracer, target, params.seed,
                                 scene.diagonal_m(), number, params.earlier, params.watch, doubtful},
-                               kept, params.keep, hits, store, progress));
-  LUXEL_TRY_STATUS(stopped(progress));
+                               params, kept, hits, store, progress));
   keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));
   return {};

@@ -49,6 +49,9 @@ struct TraceParams {
   /// Layers as followed rays see them; null: `layers`.
   const light::LightLayers* followed_layers = nullptr;
   const TileWatch* watch = nullptr;  ///< null: nobody
+  /// Whose members share tiles out; all get what is counted per element, and each keeps the hits of
+  /// its tiles, in later rounds, too. Not with keep, earlier or watch. Null: no one shares.
+  Team* team = nullptr;
 };
 
 /// A round of tracing: of each element the samples from those that it has up to `target`, so many

@@ -4,9 +4,11 @@
 #include "apps/cli/cli.h"
 #include "apps/cli/device_option.h"
 #include "luxel/arguments/bake_options.h"
+#include "luxel/cluster/mpi.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"
+#include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
 
@@ -17,7 +19,18 @@ struct BakeOptions {
   Common common;
   BakeChoice choice;
   std::string device = "cpu";
+  int processes_per_node = 1;
 };
+
+/// "8 processes on 2 nodes: 2 work, the others lend them their cores".
+std::string about_processes(const cluster::Joined& joined) {
+  const int working = joined.team ? int(joined.team->size()) : 1;
+  const std::string all = fmt::format("{} processes on {} node{}", joined.processes, joined.nodes,
+                                      joined.nodes == 1 ? "" : "s");
+  if (working == joined.processes) return all + " work together";
+  return fmt::format("{}: {} work{}, the others lend their cores (--processes-per-node)", all,
+                     working, working == 1 ? "s" : "");
+}
 
 void print_part(const nlohmann::json& part) {
   const int number = part["number"].get<int>(), of = part["of"].get<int>();
@@ -58,7 +71,8 @@ int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings)
   return run_and_print(options.common, work, print_plan);
 }
 
-int run_bake(const BakeOptions& options) {
+/// `team`: null: this process bakes alone.
+int run_bake(const BakeOptions& options, Team* team) {
   const auto settings = settings_of(options.choice);
   if (!settings) return report(settings.error(), options.common);
   if (options.choice.plan) return run_plan(options, *settings);
@@ -67,10 +81,26 @@ int run_bake(const BakeOptions& options) {
   const pipeline::BakeDevice* for_bake = *device ? &(*device)->for_pipeline : nullptr;
   return run_and_print(
       options.common,
-      [&](Progress& progress) { return pipeline::bake(*settings, progress, for_bake); },
+      [&](Progress& progress) { return pipeline::bake(*settings, progress, for_bake, team); },
       [&](const nlohmann::json& json) {
         settings->part.is_all() ? print_bake(*settings, json) : print_part(json["part"]);
       });
+}
+
+/// A bake of processes that mpirun or srun has started together.
+int run_together(BakeOptions options) {
+  auto joined = cluster::join_processes(std::string("luxel ") + pipeline::kVersion,
+                                        options.processes_per_node);
+  if (!joined) return report(joined.error(), options.common);
+  const bool is_first = joined->works && (!joined->team || joined->team->rank() == 0);
+  if (is_first && !options.common.quiet)
+    std::fprintf(stderr, "%s\n", about_processes(*joined).c_str());
+  // One of them speaks for all.
+  if (!is_first)
+    options.common = {.threads = options.common.threads, .quiet = true, .silent = true};
+  const int code = joined->works ? run_bake(options, joined->team.get()) : kDone;
+  cluster::leave_processes(std::move(*joined), code != kDone);
+  return code;
 }
 
 }  // namespace
@@ -93,10 +123,18 @@ void register_bake(CLI::App& app, Action& action) {
              "reference, what follows paths")
       ->excludes(plan);
   add_bake_table(*bake, options->choice.given);
+  bake->add_option("--processes-per-node", options->processes_per_node,
+                   "Under mpirun or srun: how many processes of each node work, each with a scene "
+                   "of its own; the others lend them their cores")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   add_common(*bake, options->common);
   bake->callback([options, scene, settings, &action] {
     if (scene->count() == 0 && settings->count() == 0) throw CLI::RequiredError("SCENE");
-    action = [options] { return run_bake(*options); };
+    action = [options] {
+      return cluster::processes_started() > 1 ? run_together(*options)
+                                              : run_bake(*options, nullptr);
+    };
   });
 }
 

@@ -27,6 +27,7 @@ struct Common {
   int threads = 0;
   bool quiet = false;
   bool json = false;
+  bool silent = false;  ///< no errors, either: another process has them
 };
 void add_common(CLI::App& command, Common& common);
 

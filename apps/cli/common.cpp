@@ -226,6 +226,7 @@ std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {
 
 int report(std::string_view code, int exit_code, const std::string& whole_message,
            const Common& common) {
+  if (common.silent) return exit_code;
   const std::string message = short_message(whole_message);
   std::fprintf(stderr, "luxel: %s\n", message.c_str());
   if (!common.json) return exit_code;

@@ -11,6 +11,7 @@
 #include <new>
 
 #include "apps/cli/cli.h"
+#include "luxel/cluster/mpi.h"
 #include "luxel/pipeline/settings/version.h"
 
 namespace {
@@ -22,6 +23,13 @@ std::string usage_message(const CLI::App& app, const CLI::Error& error) {
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
   return fmt::format("{}; '{} --help' lists what there is", text, command);
+}
+
+/// "luxel 0.1.0, with Open MPI 4.1.4".
+std::string version_text() {
+  const std::string mpi = luxel::cluster::mpi_version();
+  return fmt::format("luxel {}, {}", luxel::pipeline::kVersion,
+                     mpi.empty() ? "without MPI" : "with " + mpi);
 }
 
 bool is_command(const CLI::App& app, const std::string& name) {
@@ -48,7 +56,7 @@ int run(int argc, char** argv) {
       "luxel: diffuse global illumination. A scene in, lightmaps out.\n"
       "Try: luxel bake SCENE -o FOLDER",
       "luxel"};
-  app.set_version_flag("--version", std::string("luxel ") + luxel::pipeline::kVersion);
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   Action action;
   register_bake(app, action);

@@ -10,6 +10,7 @@
 #include "luxel/pipeline/bake/bake_files.h"
 #include "luxel/pipeline/bake/bake_report.h"
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/bake/bake_team.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/bake_parts.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
@@ -82,18 +83,15 @@ Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progres
                           {"parts_left", parts->parts_left()}}}};
 }
 
-}  // namespace
-
-Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
-                            const BakeDevice* device) {
-  LUXEL_TRY_STATUS(check(settings));
-  const ThreadLimit threads(settings.threads);
-  if (!settings.part.is_all()) return bake_part(settings, progress, device);
+/// What a bake of one process, or a team's first member, makes and writes.
+Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progress,
+                                  const BakeDevice* device, Team* team) {
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
-  Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings));
+  if (team) LUXEL_TRY_STATUS(team->begin_stage(progress));  // others may use the folder
+  Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), team);
   BakeCache cache(settings, settings_of_kept_bake(settings));
-  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device}));
+  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device, team}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());
   if (!cache.failure().empty()) result.warnings.push_back(cache.failure());
@@ -107,6 +105,31 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
   checkpoint.remove();
   cache.finish(progress);
   return std::move(finished.report);
+}
+
+/// What a member of a team does that is not the first.
+Result<nlohmann::json> help_to_bake(const BakeSettings& settings, Progress& progress, Team& team) {
+  LUXEL_TRY_STATUS(team.begin_stage(progress));
+  Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), &team);
+  const Result<Bake> ended =
+      bake_scene(settings, progress, {.checkpoint = &checkpoint, .team = &team});
+  LUXEL_CHECK(!ended);
+  if (ended.error().code != ErrorCode::parts_missing) return tl::unexpected(ended.error());
+  return nlohmann::json::object();
+}
+
+}  // namespace
+
+Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
+                            const BakeDevice* device, Team* team) {
+  LUXEL_TRY_STATUS(check(settings));
+  LUXEL_TRY_STATUS(check_team(team, settings, device != nullptr));
+  const ThreadLimit threads(settings.threads);
+  if (!settings.part.is_all()) return bake_part(settings, progress, device);
+  auto baked = !team || team->rank() == 0 ? bake_whole(settings, progress, device, team)
+                                          : help_to_bake(settings, progress, *team);
+  if (!baked && team) team->give_up(baked.error());
+  return baked;
 }
 
 Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,

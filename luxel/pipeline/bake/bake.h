@@ -5,6 +5,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::pipeline {
@@ -19,8 +20,11 @@ struct BakeDevice;
 /// its end leaves its checkpoint, nothing else; one that does leaves DIR/cache with settings.keep.
 /// A bake on a `device` keeps nothing in a checkpoint; null: the processor's. A part of a bake
 /// (settings.part) leaves the file of that part alone, and returns {"part": ...} about it.
+///
+/// The members of a `team` call this together, with the same settings: they share the work out, the
+/// first one writes what comes of it, and the others get {}. Null: there is none.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
-                            const BakeDevice* device = nullptr);
+                            const BakeDevice* device = nullptr, Team* team = nullptr);
 
 /// Writes what bake() leaves of a bake that bake_scene() made, whose stages are those of `baked`.
 /// Returns what bake.json holds. Errors: those of files; cancelled.

@@ -13,6 +13,7 @@
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/bake_device.h"
+#include "luxel/pipeline/bake/bake_team.h"
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/pipeline/bake/denoise_light.h"
@@ -176,8 +177,10 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
   PartStore* parts = keepers.checkpoint ? keepers.checkpoint->parts() : nullptr;
-  if (parts) parts->set_context(digest_of(bake.map, ready.elements));
-  const SolveStores stores{parts, keepers.cache, keepers.device};
+  const uint64_t layout = parts || keepers.team ? digest_of(bake.map, ready.elements) : 0;
+  if (parts) parts->set_context(layout);
+  LUXEL_TRY_STATUS(check_same_layout(keepers.team, layout, progress));
+  const SolveStores stores{parts, keepers.cache, keepers.device, keepers.team};
   SolveObserver observer;
   if (watcher.on_estimate)
     observer = observer_of(watcher, input);
@@ -186,6 +189,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   hemicube::Observer inside;
   if (watcher.hemicube) inside = watcher.hemicube(input), observer.hemicube = &inside;
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
+  LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   std::vector<uint32_t> regions;
   if (settings.repair_leaks) {
     regions = connected_texels(input, bake.light.hidden, progress);

@@ -8,6 +8,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/export/view_page.h"
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/bake/layers.h"
@@ -30,6 +31,7 @@ struct Keepers {
   Checkpoint* checkpoint = nullptr;  ///< a bake on a device keeps nothing there
   BakeCache* cache = nullptr;
   const BakeDevice* device = nullptr;
+  Team* team = nullptr;  ///< see bake_scene()
 };
 
 /// A finished bake in memory, before anything is written.
@@ -81,8 +83,10 @@ Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::s
                                 Progress& progress);
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:
-/// whatever the stages say; settings out of range; settings that a device does not know.
+/// name in or above settings.output, and the checkpoint and the cache, if there are any. The members
+/// of keepers.team share the work out; all but the first end with ErrorCode::parts_missing then, for
+/// the rest is the first one's. Errors: whatever the stages say; settings out of range; settings
+/// that a device does not know.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
                         const Keepers& keepers = {}, const BakeObserver& observer = {});
 

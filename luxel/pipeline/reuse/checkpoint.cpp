@@ -92,8 +92,10 @@ std::string difference_of(const RecordFile& file, const std::string& header) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity, const json& all_settings)
+Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity, const json& all_settings,
+                       const Team* team)
     : settings_(settings),
+      file_(parts_file(settings, team)),
       identity_(std::make_unique<json>(identity)),
       all_settings_(std::make_unique<json>(all_settings)),
       start_(std::chrono::steady_clock::now()) {}
@@ -103,7 +105,7 @@ Checkpoint::~Checkpoint() = default;
 /// The bake's own file as it was left; nothing where the bake begins anew.
 Result<std::optional<RecordFile>> Checkpoint::own_file(const std::string& header,
                                                        Progress& progress) {
-  const fs::path file = parts_file(settings_);
+  const fs::path& file = file_;
   const bool is_part = !settings_.part.is_all(), goes_on = settings_.resume || is_part;
   std::error_code ignored;
   const bool there = fs::exists(file, ignored);
@@ -120,7 +122,8 @@ Result<std::optional<RecordFile>> Checkpoint::own_file(const std::string& header
         "{} is of a bake that did not end; this one starts from the beginning, --resume would go "
         "on with it",
         file.string());
-  } else if (settings_.resume && !is_part && settings_.parts.empty()) {
+  } else if (settings_.resume && !is_part && settings_.parts.empty() &&
+             other_parts(settings_, file).empty()) {
     note_ = fmt::format("there is no {} to resume from; the bake starts from the beginning",
                         file.string());
   }
@@ -129,11 +132,19 @@ Result<std::optional<RecordFile>> Checkpoint::own_file(const std::string& header
 }
 
 /// The files of other_parts().
-Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& header) const {
+Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& header,
+                                                        Progress& progress) const {
+  const bool are_checkpoints = settings_.part.is_all() && settings_.parts.empty();
   std::vector<RecordFile> out;
-  for (const fs::path& file : other_parts(settings_)) {
+  for (const fs::path& file : other_parts(settings_, file_)) {
     LUXEL_TRY(RecordFile other, RecordFile::open_to_read(file));
-    if (const std::string different = difference_of(other, header); !different.empty())
+    const std::string different = difference_of(other, header);
+    if (!different.empty() && are_checkpoints) {
+      progress.note(fmt::format("{} is of another bake: {}; it is left alone", file.string(),
+                                different));
+      continue;
+    }
+    if (!different.empty())
       return fail(ErrorCode::bad_setting,
                   "{} is of another bake: {}; take it away, or give another --output",
                   file.string(), different);
@@ -149,9 +160,9 @@ Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   // Names of things may be no UTF-8, which JSON knows nothing else of.
   const std::string header = described.dump(-1, ' ', false, json::error_handler_t::replace);
   LUXEL_TRY(std::optional<RecordFile> found, own_file(header, progress));
-  LUXEL_TRY(std::vector<RecordFile> others, other_files(header));
-  PartStoreParams params{parts_file(settings_), header,
-                         "--resume goes on from " + parts_file(settings_).string(),
+  LUXEL_TRY(std::vector<RecordFile> others, other_files(header, progress));
+  resumed_ = resumed_ || (settings_.resume && !others.empty());
+  PartStoreParams params{file_, header, "--resume goes on from " + file_.string(),
                          settings_.checkpoint_s, start_};
   if (!settings_.parts.empty()) params.way_on = "the same command goes on";
   if (!settings_.part.is_all()) {
@@ -176,15 +187,18 @@ json Checkpoint::about() const {
 
 bool Checkpoint::has_file() const {
   std::error_code ignored;
-  return parts_ && fs::exists(parts_file(settings_), ignored);
+  return parts_ && fs::exists(file_, ignored);
 }
 
 void Checkpoint::remove() {
   if (!parts_) return;
   parts_.reset();
   std::error_code ignored;
-  const fs::path file = parts_file(settings_);
-  fs::remove(file, ignored), fs::remove(RecordFile::unfinished_name(file), ignored);
+  std::vector<fs::path> files{file_};
+  if (settings_.part.is_all()) files = checkpoints_in(settings_.output);
+  files.push_back(file_);
+  for (const fs::path& file : files)
+    fs::remove(file, ignored), fs::remove(RecordFile::unfinished_name(file), ignored);
 }
 
 }  // namespace luxel::pipeline

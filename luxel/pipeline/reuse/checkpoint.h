@@ -28,15 +28,16 @@ class Checkpoint {
  public:
   /// The bake begins now. `settings` outlives this; `identity` is what must be equal in a bake that
   /// goes on with it (settings_of_checkpoint), `all_settings` what the file says to who ends the
-  /// bake (to_json).
+  /// bake (to_json). Each member of a team has one, of the same bake; null: it is one process's.
   Checkpoint(const BakeSettings& settings, const nlohmann::json& identity,
-             const nlohmann::json& all_settings);
+             const nlohmann::json& all_settings, const Team* team = nullptr);
   ~Checkpoint();
 
   /// The scene is known, with its outside light. With settings.resume goes on with the file that is
   /// there; says in a note when there is none, or one that is not gone on with. A part of a bake
-  /// always goes on with its file, and everything is kept. What is in other_parts() is found, too.
-  /// Errors: a file is of another bake, or damaged.
+  /// always goes on with its file, and everything is kept. What is in other_parts() is found, too;
+  /// of these, checkpoints of other bakes are left alone, which a note says. Errors: a file is of
+  /// another bake, or damaged.
   Status open(const scene::Scene& scene, Progress& progress);
   /// Null before open(), and where nothing is kept.
   PartStore* parts() { return parts_ ? &*parts_ : nullptr; }
@@ -44,14 +45,15 @@ class Checkpoint {
   nlohmann::json about() const;
   /// Whether a file is there that takes room on the disk.
   bool has_file() const;
-  /// The bake is done, or must do without: nothing of it stays.
+  /// The bake is done, or must do without: nothing of it stays, of no process.
   void remove();
 
  private:
   Result<std::optional<RecordFile>> own_file(const std::string& header, Progress& progress);
-  Result<std::vector<RecordFile>> other_files(const std::string& header) const;
+  Result<std::vector<RecordFile>> other_files(const std::string& header, Progress& progress) const;
 
   const BakeSettings& settings_;
+  std::filesystem::path file_;
   std::unique_ptr<nlohmann::json> identity_, all_settings_;
   std::chrono::steady_clock::time_point start_;
   bool resumed_ = false;

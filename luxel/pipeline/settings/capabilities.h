@@ -17,6 +17,7 @@ struct Capabilities {
   bool direct = false;          ///< can tell direct light apart: --light
   bool scatters = false;        ///< follows light that surfaces scatter through
   bool parts = false;           ///< keeps its finished parts: --checkpoint, --resume
+  bool teams = false;           ///< shares its work out among processes: mpirun
   bool keeps = false;           ///< leaves what later bakes can build on: --keep
   bool device = false;          ///< has rays that a graphics device can trace
   bool vertex_light = false;    ///< solves for light per vertex: --vertex-colors

@@ -239,7 +239,7 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
     own.earlier = &*earlier;
   else
     LUXEL_TRY_STATUS(look_ahead(in, settings, stores, own, params, warnings, progress));
-  own.parts = stores.parts;  // not for the trial
+  own.parts = stores.parts, own.team = stores.team;  // not for the trial
   if (keeps) own.keep = stores.cache->rays();
   const GatherCall call{in, told_apart, params, own,
                         gather::GatherObserver{.on_estimate = observer.on_estimate,
@@ -276,6 +276,7 @@ Solver gather_solver() {
                   .direct = true,
                   .scatters = true,
                   .parts = true,
+                  .teams = true,
                   .keeps = true,
                   .device = true},
           .solve = solve_gather,

@@ -9,6 +9,7 @@
 
 #include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/part_store.h"
+#include "luxel/base/team.h"
 #include "luxel/light/light_estimate.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/texel_scene.h"
@@ -44,6 +45,7 @@ struct SolveStores {
   PartStore* parts = nullptr;  ///< where its finished parts are kept and found
   BakeCache* cache = nullptr;  ///< what it builds on, and where it keeps itself for later bakes
   const BakeDevice* device = nullptr;
+  Team* team = nullptr;  ///< whose members share the work out, of a solver with `teams`
 };
 
 /// Who watches a solver; nothing where nobody does.

@@ -54,8 +54,8 @@ Status keep_chunk(const EndedChunk& chunk, const gpu::Buffer& landed, const Chun
                           more + ended.end[k]);
       hits.end.push_back(uint32_t(hits.entries.size()));
     }
-    const size_t begin = chunk.slots.begin + first;
-    gather::keep_tile(keeper.kept, begin, begin + ended.end.size(), tile, keeper.hits);
+    gather::keep_tile(keeper.kept, (chunk.slots.begin + first) / gather::kTileElements, tile,
+                      keeper.hits);
   }
   return {};
 }

@@ -1,0 +1,57 @@
+#include "luxel/pipeline/bake/bake_team.h"
+
+#include "luxel/base/bytes.h"
+#include "luxel/pipeline/solver/solvers.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Solvers that know teams, for messages.
+std::string solvers_with_teams() {
+  std::string out;
+  for (const Solver& solver : solvers())
+    if (solver.can.teams) out += (out.empty() ? "" : ", ") + std::string(solver.name);
+  return out;
+}
+
+}  // namespace
+
+Status check_team(const Team* team, const BakeSettings& settings, bool has_device) {
+  if (!team) return {};
+  const auto refuse = [&](const std::string& option) {
+    return fail(ErrorCode::bad_setting,
+                "{} is for one process, and {} were started together; leave it or mpirun out",
+                option, team->size());
+  };
+  if (!find_solver(settings.solver)->can.teams)
+    return fail(ErrorCode::bad_setting,
+                "--solver {} works in one process, and {} were started together; leave mpirun out, "
+                "or choose one that shares its work: {}",
+                settings.solver, team->size(), solvers_with_teams());
+  if (!settings.part.is_all())
+    return refuse(fmt::format("--part {}/{}", settings.part.number, settings.part.of));
+  if (settings.keep) return refuse("--keep");
+  if (has_device) return refuse("--device");
+  return {};
+}
+
+Status check_same_layout(Team* team, uint64_t digest, Progress& progress) {
+  if (!team) return {};
+  ByteWriter own;
+  own.put_value(digest);
+  LUXEL_TRY(const auto all, team->all_gather(own.bytes, progress));
+  for (size_t rank = 1; rank < all.size(); ++rank)
+    if (all[rank] != all[0])
+      return fail(ErrorCode::bad_input,
+                  "process {} has laid the scene out differently than process 0: its files differ, "
+                  "or its node's processor is of another kind",
+                  rank);
+  return {};
+}
+
+Status leave_rest_to_first(const Team* team) {
+  if (!team || team->rank() == 0) return {};
+  return fail(ErrorCode::parts_missing, "the rest is the work of process 0");
+}
+
+}  // namespace luxel::pipeline

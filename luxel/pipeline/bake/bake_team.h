@@ -1,0 +1,20 @@
+// Bakes that several processes share out among each other while they run: mpirun.
+#pragma once
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/base/team.h"
+#include "luxel/pipeline/settings/settings.h"
+
+namespace luxel::pipeline {
+
+/// Errors (bad_setting): an option or a solver that knows no team. Null: there is none.
+Status check_team(const Team* team, const BakeSettings& settings, bool has_device);
+
+/// Errors: members have laid the scene out differently (bad_input), another member gives up.
+Status check_same_layout(Team* team, uint64_t digest, Progress& progress);
+
+/// Errors (parts_missing): this is a team's member, and not its first.
+Status leave_rest_to_first(const Team* team);
+
+}  // namespace luxel::pipeline

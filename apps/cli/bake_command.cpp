@@ -95,6 +95,7 @@ int run_together(BakeOptions options) {
   const bool is_first = joined->works && (!joined->team || joined->team->rank() == 0);
   if (is_first && !options.common.quiet)
     std::fprintf(stderr, "%s\n", about_processes(*joined).c_str());
+  options.common.in_team = true;
   // One of them speaks for all.
   if (!is_first)
     options.common = {.threads = options.common.threads, .quiet = true, .silent = true};

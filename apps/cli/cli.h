@@ -27,7 +27,8 @@ struct Common {
   int threads = 0;
   bool quiet = false;
   bool json = false;
-  bool silent = false;  ///< no errors, either: another process has them
+  bool silent = false;   ///< no errors, either: another process has them
+  bool in_team = false;  ///< started by mpirun, which kills it when another process ends
 };
 void add_common(CLI::App& command, Common& common);
 

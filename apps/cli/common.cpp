@@ -71,12 +71,16 @@ std::string_view name_of(ErrorCode code) {
 /// finished stage.
 class ProgressLine {
  public:
-  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+  explicit ProgressLine(const Common& common)
+      : quiet_(common.quiet),
+        says_way_on_(common.in_team),
+        terminal_(::isatty(STDERR_FILENO) != 0) {}
 
   void show(const Progress& progress) {
     const Progress::Snapshot now = progress.snapshot();
     print_notes(progress);
     if (quiet_ || now.stage_index < 0) return;
+    say_way_on(progress);
     print_finished(progress, size_t(now.stage_index));
     if (now.stage == "trace rays") rays_ = now.total - now.skipped;
     if (!terminal_) return;
@@ -108,6 +112,15 @@ class ProgressLine {
   }
 
  private:
+  /// As soon as there is a way on: when another process ends, mpirun passes nothing on any more, and
+  /// kills this one.
+  void say_way_on(const Progress& progress) {
+    const std::string way_on = says_way_on_ ? progress.way_on() : std::string();
+    if (way_on.empty()) return;
+    says_way_on_ = false;
+    std::fprintf(stderr, "%sfinished parts are kept from now on: %s\n",
+                 terminal_ ? "\r\033[K" : "", way_on.c_str());
+  }
   void print_notes(const Progress& progress) {
     for (const std::string& note : progress.notes(notes_)) {
       if (!quiet_) std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", note.c_str());
@@ -125,7 +138,7 @@ class ProgressLine {
     }
   }
 
-  bool quiet_, terminal_;
+  bool quiet_, says_way_on_, terminal_;
   size_t printed_ = 0, notes_ = 0;
   uint64_t rays_ = 0;
 };
@@ -150,7 +163,7 @@ enum class Work { running, succeeded, failed };
 
 void watch(Progress& progress, const std::atomic<Work>& work, const Common& common) {
   using Clock = std::chrono::steady_clock;
-  ProgressLine line(common.quiet);
+  ProgressLine line(common);
   Clock::time_point asked{};
   while (work == Work::running) {
     if (stop_requested()) {

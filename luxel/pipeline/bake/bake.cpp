@@ -83,12 +83,17 @@ Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progres
                           {"parts_left", parts->parts_left()}}}};
 }
 
+nlohmann::json identity_of(const BakeSettings& settings) {
+  return bake_identity(settings_of_checkpoint(settings));
+}
+
 /// What a bake of one process, or a team's first member, makes and writes.
 Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progress,
                                   const BakeDevice* device, Team* team) {
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
-  if (team) LUXEL_TRY_STATUS(team->begin_stage(progress));  // others may use the folder
+  // Others wait for the folder there.
+  LUXEL_TRY_STATUS(check_same_settings(team, identity_of(settings), progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), team);
   BakeCache cache(settings, settings_of_kept_bake(settings));
   LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device, team}));
@@ -109,7 +114,7 @@ Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progre
 
 /// What a member of a team does that is not the first.
 Result<nlohmann::json> help_to_bake(const BakeSettings& settings, Progress& progress, Team& team) {
-  LUXEL_TRY_STATUS(team.begin_stage(progress));
+  LUXEL_TRY_STATUS(check_same_settings(&team, identity_of(settings), progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), &team);
   const Result<Bake> ended =
       bake_scene(settings, progress, {.checkpoint = &checkpoint, .team = &team});

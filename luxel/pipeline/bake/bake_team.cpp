@@ -1,6 +1,9 @@
 #include "luxel/pipeline/bake/bake_team.h"
 
+#include <nlohmann/json.hpp>
+
 #include "luxel/base/bytes.h"
+#include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/solver/solvers.h"
 
 namespace luxel::pipeline {
@@ -32,6 +35,23 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
     return refuse(fmt::format("--part {}/{}", settings.part.number, settings.part.of));
   if (settings.keep) return refuse("--keep");
   if (has_device) return refuse("--device");
+  return {};
+}
+
+Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress) {
+  if (!team) return {};
+  const std::string own = identity.dump();
+  LUXEL_TRY(const auto all, team->all_gather(std::as_bytes(std::span(own)), progress));
+  const auto read = [&](size_t rank) {
+    const auto* text = reinterpret_cast<const char*>(all[rank].data());
+    return nlohmann::json::parse(text, text + all[rank].size(), nullptr, false);
+  };
+  for (size_t rank = 1; rank < all.size(); ++rank)
+    if (all[rank] != all[0])
+      return fail(ErrorCode::bad_setting,
+                  "process {} was not given the settings of process 0: {}; start all with the same "
+                  "command",
+                  rank, difference(read(rank), read(0)));
   return {};
 }
 

@@ -1,6 +1,8 @@
 // Bakes that several processes share out among each other while they run: mpirun.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/base/team.h"
@@ -10,6 +12,10 @@ namespace luxel::pipeline {
 
 /// Errors (bad_setting): an option or a solver that knows no team. Null: there is none.
 Status check_team(const Team* team, const BakeSettings& settings, bool has_device);
+
+/// Errors: members were given other settings than the first one (bad_setting), of those that
+/// `identity` has (bake_identity()); another member gives up.
+Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress);
 
 /// Errors: members have laid the scene out differently (bad_input), another member gives up.
 Status check_same_layout(Team* team, uint64_t digest, Progress& progress);

@@ -44,6 +44,9 @@ if [[ ${1:-} == tests ]]; then
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
   command -v Xvfb >/dev/null || wanted+=(xvfb)
+  # Bakes on clusters, which luxel has where it is built with them.
+  command -v mpirun >/dev/null || wanted+=(openmpi-bin)
+  command -v mpicc >/dev/null || wanted+=(libopenmpi-dev)
   # A graphics device without a graphics card, and who watches how it is used.
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || wanted+=(mesa-vulkan-drivers)
   compgen -G '/usr/share/vulkan/explicit_layer.d/*validation*.json' >/dev/null ||

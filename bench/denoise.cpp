@@ -56,9 +56,9 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
     // The filter, in place.
     const double light_s = processor_seconds_since(start);
     start = std::clock();
-    LUXEL_TRY_STATUS(pipeline::denoise_light(
-        p->input(), settings, pipeline::connected_texels(p->input(), bake.light.hidden, progress),
-        bake.light, progress));
+    LUXEL_TRY(const std::vector<uint32_t> regions,
+              pipeline::connected_texels(p->input(), bake.light.hidden, progress));
+    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), settings, regions, bake.light, progress));
     const double seconds = processor_seconds_since(start);
     const validate::Errors after =
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
@@ -88,9 +88,9 @@ Status measure_large(Table& table) {
   LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings, progress));
   const double light_s = processor_seconds_since(start);
   start = std::clock();
-  LUXEL_TRY_STATUS(pipeline::denoise_light(
-      p->input(), settings, pipeline::connected_texels(p->input(), bake.light.hidden, progress),
-      bake.light, progress));
+  LUXEL_TRY(const std::vector<uint32_t> regions,
+            pipeline::connected_texels(p->input(), bake.light.hidden, progress));
+  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), settings, regions, bake.light, progress));
   const double seconds = processor_seconds_since(start);
   table.notes.push_back(
       fmt::format("The Cornell box at 1024 x 1024 ({} texels), 64 samples: {:.1f} processor "

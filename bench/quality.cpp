@@ -146,7 +146,8 @@ Result<std::array<QualityFigures, 2>> measure_run(const QualityCase& c, const Qu
     if (denoised) {
       start = std::clock();
       const light::TexelScene in = c.input();
-      const std::vector<uint32_t> regions = pipeline::connected_texels(in, light.hidden, progress);
+      LUXEL_TRY(const std::vector<uint32_t> regions,
+                pipeline::connected_texels(in, light.hidden, progress));
       LUXEL_TRY_STATUS(pipeline::denoise_light(in, settings, regions, light, progress));
       seconds += processor_seconds_since(start);
     }

@@ -1,6 +1,7 @@
 // The pieces of a stage, shared out among the members of a team.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <type_traits>
@@ -38,6 +39,64 @@ struct PieceExchange {
 /// member has sent does not end where it should.
 Status exchange(Team* team, std::span<const uint32_t> own, const PieceExchange& pieces,
                 Progress& progress);
+
+/// Calls work(begin, end) on ranges that cover [0, count), each `grain` long but the last one, at one
+/// member of the team each. It sets `values` there, which have one entry each per number: all
+/// members get all of them. Errors: those of exchange().
+template <class... T>
+Status share_ranges(Team* team, size_t count, size_t grain, Progress& progress,
+                    const std::function<void(size_t begin, size_t end)>& work,
+                    std::span<T>... values) {
+  const size_t pieces = (count + grain - 1) / grain;
+  const auto end_of = [=](size_t piece) { return std::min((piece + 1) * grain, count); };
+  LUXEL_TRY(const std::vector<uint32_t> own, share_out(team, pieces, progress, [&](size_t piece) {
+              work(piece * grain, end_of(piece));
+            }));
+  const auto for_each = [&](size_t piece, const auto& visit) {
+    const size_t begin = piece * grain;
+    (visit(values.subspan(begin, end_of(piece) - begin)), ...);
+  };
+  return exchange(team, own,
+                  {pieces,
+                   [&](size_t piece, ByteWriter& out) {
+                     for_each(piece, [&](auto part) { out.put(std::as_bytes(part)); });
+                   },
+                   [&](size_t piece, uint32_t, ByteReader& in) {
+                     for_each(piece, [&](auto part) { in.get(std::as_writable_bytes(part)); });
+                     return in.ok;
+                   }},
+                  progress);
+}
+
+/// The same for lists of any length: work(begin, end) returns one for its range. Returns them all,
+/// one after the other in the order of ranges.
+template <class T>
+Result<std::vector<T>> share_lists(
+    Team* team, size_t count, size_t grain, Progress& progress,
+    const std::function<std::vector<T>(size_t begin, size_t end)>& work) {
+  std::vector<std::vector<T>> found((count + grain - 1) / grain);
+  LUXEL_TRY(const std::vector<uint32_t> own,
+            share_out(team, found.size(), progress, [&](size_t piece) {
+              found[piece] = work(piece * grain, std::min((piece + 1) * grain, count));
+            }));
+  LUXEL_TRY_STATUS(exchange(team, own,
+                            {found.size(),
+                             [&](size_t piece, ByteWriter& out) {
+                               out.put_value(uint64_t(found[piece].size()));
+                               out.put(std::span<const T>(found[piece]));
+                             },
+                             [&](size_t piece, uint32_t, ByteReader& in) {
+                               const uint64_t size = in.get_value<uint64_t>();
+                               if (size > in.bytes.size() / sizeof(T)) return false;
+                               found[piece].resize(size);
+                               in.get(std::span<T>(found[piece]));
+                               return in.ok;
+                             }},
+                            progress));
+  std::vector<T> all;
+  for (const std::vector<T>& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
 
 /// Calls keep(some) on one of as many equal parts of `which` as there are members, which drops
 /// numbers from it and returns how many rays that took. `which` becomes what is left of all parts,

@@ -66,10 +66,11 @@ void keep_sum(const Neighbourhood& n, const NoiseLevel& noise, const Balance& be
 
 /// The fireflies of a part; of direct light those that are none on a closer look left out.
 Result<std::vector<Firefly>> fireflies_of(const Neighbourhood& n, const NoiseLevel& noise,
-                                          const NoisyLight& part) {
+                                          const NoisyLight& part, Team* team,
+                                          Progress& progress) {
   if (part.is_direct && !part.look_again) return std::vector<Firefly>{};
-  std::vector<Firefly> found =
-      find_fireflies(n, {part.values, part.variance, noise, part.is_direct});
+  LUXEL_TRY(std::vector<Firefly> found,
+            find_fireflies(n, {part.values, part.variance, noise, part.is_direct}, team, progress));
   if (!part.is_direct || found.empty()) return found;
   std::vector<uint32_t> texels;
   for (const Firefly& f : found) texels.push_back(f.texel);
@@ -83,10 +84,10 @@ Result<std::vector<Firefly>> fireflies_of(const Neighbourhood& n, const NoiseLev
 
 /// Filters one part in place.
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
-              Progress& progress) {
-  const NoiseLevel noise = noise_level(n, part.values, part.variance);
+              Team* team, Progress& progress) {
+  LUXEL_TRY(const NoiseLevel noise, noise_level(n, part.values, part.variance, team, progress));
   const Balance before = balance_of(n, noise, part.values);
-  LUXEL_TRY(const std::vector<Firefly> fireflies, fireflies_of(n, noise, part));
+  LUXEL_TRY(const std::vector<Firefly> fireflies, fireflies_of(n, noise, part, team, progress));
   share_out(n, part.variance, fireflies, part.values);
   Planes planes{std::vector<Plane>(part.values.size()), std::vector<Shown>(part.values.size())};
   std::vector<Plane>& now = planes.planes;
@@ -95,7 +96,7 @@ Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLi
   for (const float radius : kRadii) {
     if (radius > params.radius) break;
     LUXEL_TRY_STATUS(
-        grow(n, noise, part.values, {radius, deviations * deviations}, planes, progress));
+        grow(n, noise, part.values, {radius, deviations * deviations}, planes, team, progress));
     deviations = params.max_deviations;
   }
   for (size_t i = 0; i < now.size(); ++i) {
@@ -109,7 +110,7 @@ Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLi
 }  // namespace
 
 Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
-               const DenoiseParams& params, Progress& progress) {
+               const DenoiseParams& params, Progress& progress, Team* team) {
   for (const NoisyLight& part : parts) {
     LUXEL_CHECK(part.values.size() == places.map.texels.size());
     LUXEL_CHECK(part.variance.size() == part.values.size());
@@ -118,8 +119,8 @@ Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
   }
   progress.begin("denoise", parts.size() * places.map.texels.size() * std::size(kRadii));
   if (kHasOidn) return denoise_with_oidn(places, parts, progress);
-  LUXEL_TRY(const Neighbourhood n, make_neighbourhood(places, params, progress));
-  for (const NoisyLight& part : parts) LUXEL_TRY_STATUS(filter(n, params, part, progress));
+  LUXEL_TRY(const Neighbourhood n, make_neighbourhood(places, params, team, progress));
+  for (const NoisyLight& part : parts) LUXEL_TRY_STATUS(filter(n, params, part, team, progress));
   return {};
 }
 

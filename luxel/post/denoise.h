@@ -10,6 +10,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::post {
@@ -58,8 +59,9 @@ std::string_view denoiser_name();
 /// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/method/denoise.md).
 /// Fireflies (luxel/post/outliers.h) are shared out among their neighbours first. The sum of values
 /// stays. Texels without variance around them keep their values bit for bit. Values stay finite and
-/// non-negative. The same bits for any number of threads. Errors: cancelled; those of look_again.
+/// non-negative. The same bits for any number of threads, and of members of a team, who share the
+/// texels out. Errors: cancelled; those of look_again; another member of the team gives up.
 Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
-               const DenoiseParams& params, Progress& progress);
+               const DenoiseParams& params, Progress& progress, Team* team = nullptr);
 
 }  // namespace luxel::post

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "luxel/base/buffer_pool.h"
-#include "luxel/base/parallel.h"
 #include "luxel/post/texel_tile.h"
 
 namespace luxel::post {
@@ -193,18 +192,37 @@ Moments moments_of(const MomentLanes& m) {
           sum_of(m.su), sum_of(m.sv), sum_of(m.suu), sum_of(m.suv), sum_of(m.svv)};
 }
 
+/// Gives all members of the team what texels of its own squares show. Errors: those of exchange().
+Status give_shown(Team* team, const Neighbourhood& n, Planes& now, Progress& progress) {
+  std::vector<Plane>& planes = now.planes;
+  return exchange(team, *now.own_squares,
+                  {tile_count(n),
+                   [&](size_t number, ByteWriter& out) {
+                     for_texels_of_square(n, number, [&](uint32_t i) {
+                       out.put_value(planes[i].value), out.put_value(planes[i].variance);
+                     });
+                   },
+                   [&](size_t number, uint32_t, ByteReader& in) {
+                     for_texels_of_square(n, number, [&](uint32_t i) {
+                       planes[i].value = in.get_value<Rgb>();
+                       planes[i].variance = in.get_value<float>();
+                     });
+                     return in.ok;
+                   }},
+                  progress);
+}
+
 }  // namespace
 
 Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb> values,
-            const GrowRound& round, Planes& now, Progress& progress) {
+            const GrowRound& round, Planes& now, Team* team, Progress& progress) {
   std::vector<Plane>& planes = now.planes;
   std::vector<Shown>& shown = now.shown;
   for (size_t i = 0; i < planes.size(); ++i)
     shown[i] = {planes[i].value, planes[i].variance, values[i], noise.variance[i]};
   const int reach = std::min(int(round.radius), n.radius);
   BufferPool<ShownTile> pool;
-  parallel_for(tile_count(n), 1, [&](size_t number, size_t) {
-    if (progress.cancelled()) return;
+  const auto grow_square = [&](size_t number) {
     ShownTile around = pool.take();
     fill_tile(
         n, number, reach, [&](size_t cells) { around.clear(cells); },
@@ -225,8 +243,13 @@ Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb
     });
     pool.give(std::move(around));
     progress.advance(done);
-  });
-  return stopped(progress);
+  };
+  if (now.own_squares) {
+    LUXEL_TRY_STATUS(do_own(team, *now.own_squares, progress, grow_square));
+  } else {
+    LUXEL_TRY(now.own_squares, luxel::share_out(team, tile_count(n), progress, grow_square));
+  }
+  return give_shown(team, n, now, progress);
 }
 
 }  // namespace luxel::post

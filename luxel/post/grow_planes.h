@@ -1,6 +1,7 @@
 // Planes through the light around texels, each round from a larger window.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,14 +33,19 @@ struct GrowRound {
   float max_deviations2 = 0;  ///< largest squared difference over its variance that counts
 };
 struct Planes {
-  std::vector<Plane> planes;  ///< per texel
-  std::vector<Shown> shown;   ///< what the others see of each: a buffer
+  /// Per texel. Members of a team know slopes of their own texels alone, which nobody else asks for.
+  std::vector<Plane> planes;
+  std::vector<Shown> shown;  ///< what the others see of each: a buffer
+  /// The squares of the atlas (texel_tile.h) whose texels are this member's, or all; none before the
+  /// first round.
+  std::optional<std::vector<uint32_t>> own_squares{};
 };
 
 /// One round: every texel's plane from the texels around it, weighted by how well the estimates of
 /// the round before agree. What is shown is made anew from the planes, which are then replaced.
-/// Errors: cancelled.
+/// Members of a team share the texels out; null: there is none. Errors: cancelled, another member
+/// gives up.
 Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb> values,
-            const GrowRound& round, Planes& now, Progress& progress);
+            const GrowRound& round, Planes& now, Team* team, Progress& progress);
 
 }  // namespace luxel::post

@@ -5,7 +5,7 @@
 
 #include "luxel/base/buffer_pool.h"
 #include "luxel/base/check.h"
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/post/texel_tile.h"
 
 namespace luxel::post {
@@ -97,11 +97,11 @@ bool is_near_a_border(const TexelTile& tile, const Around& self, size_t cell, in
 }
 
 /// Per texel, 1: it takes part, and is_near_a_border().
-std::vector<uint8_t> find_near_borders(const Neighbourhood& n, Progress& progress) {
+Result<std::vector<uint8_t>> find_near_borders(const Neighbourhood& n, Team* team,
+                                               Progress& progress) {
   std::vector<uint8_t> out(n.place.size());
   BufferPool<TexelTile> pool;
-  parallel_for(tile_count(n), 1, [&](size_t number, size_t) {
-    if (progress.cancelled()) return;
+  const auto look = [&](size_t number) {
     TexelTile tile = pool.take();
     fill_tile(
         n, number, n.radius, [](size_t) {}, [](size_t, uint32_t) {}, tile);
@@ -112,7 +112,9 @@ std::vector<uint8_t> find_near_borders(const Neighbourhood& n, Progress& progres
       out[i] = is_near_a_border(tile, self, cell, n.radius);
     });
     pool.give(std::move(tile));
-  });
+  };
+  LUXEL_TRY(const std::vector<uint32_t> own, luxel::share_out(team, tile_count(n), progress, look));
+  LUXEL_TRY_STATUS(give_squares(team, own, n, progress, std::span(out)));
   return out;
 }
 
@@ -150,10 +152,34 @@ void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, std::vector<
   if (found.size() > kMaxFar) found.resize(kMaxFar);
 }
 
+/// Gives all members of the team the blocks that each has filled. Errors: those of exchange().
+Status give_far(Team* team, std::span<const uint32_t> own, Neighbourhood& n, Progress& progress) {
+  return exchange(team, own,
+                  {n.far.size(),
+                   [&](size_t number, ByteWriter& out) {
+                     const FarBlock& block = n.far[number];
+                     out.put_value(uint32_t(block.end.size()));
+                     out.put(std::span(block.end)), out.put(std::span(block.texel));
+                   },
+                   [&](size_t number, uint32_t, ByteReader& in) {
+                     FarBlock& block = n.far[number];
+                     const uint32_t texels = in.get_value<uint32_t>();
+                     if (texels > kBlockTexels) return false;
+                     block.end.resize(texels);
+                     in.get(std::span(block.end));
+                     const size_t count = texels == 0 ? 0 : block.end.back();
+                     if (count > in.bytes.size() / sizeof(uint32_t)) return false;
+                     block.texel.resize(count);
+                     in.get(std::span(block.texel));
+                     return in.ok;
+                   }},
+                  progress);
+}
+
 }  // namespace
 
 Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const DenoiseParams& params,
-                                         Progress& progress) {
+                                         Team* team, Progress& progress) {
   const size_t count = places.map.texels.size();
   LUXEL_CHECK(places.position.size() == count && places.normal.size() == count);
   LUXEL_CHECK(places.hidden.size() == count && params.radius >= 1);
@@ -173,18 +199,20 @@ Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const Deno
   const float typical = median_spacing(n.place);
   if (typical <= 0) return n;
   const Grid grid = make_grid(n.place, float(n.radius) * typical);
-  const std::vector<uint8_t> near_border = find_near_borders(n, progress);
-  parallel_for(count, kBlockTexels, [&](size_t begin, size_t end) {
-    FarBlock& block = n.far[begin / kBlockTexels];
+  LUXEL_TRY(const std::vector<uint8_t> near_border, find_near_borders(n, team, progress));
+  const auto find = [&](size_t number) {
+    FarBlock& block = n.far[number];
     std::vector<Candidate> found;
+    const size_t begin = number * kBlockTexels, end = std::min(begin + kBlockTexels, count);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       found.clear();
       if (near_border[i]) find_far(n, grid, uint32_t(i), found);
       for (const Candidate& c : found) block.texel.push_back(c.texel);
       block.end.push_back(uint32_t(block.texel.size()));
     }
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
+  };
+  LUXEL_TRY(const std::vector<uint32_t> own, luxel::share_out(team, n.far.size(), progress, find));
+  LUXEL_TRY_STATUS(give_far(team, own, n, progress));
   return n;
 }
 

@@ -33,9 +33,10 @@ struct Neighbourhood {
   std::vector<FarBlock> far;
 };
 
-/// Errors: cancelled.
+/// Members of a team share the texels out; null: there is none. Errors: cancelled, another member
+/// gives up.
 Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const DenoiseParams& params,
-                                         Progress& progress);
+                                         Team* team, Progress& progress);
 
 /// A neighbour's place in the tangent plane of a texel, in texels, and how far it counts: 0 on
 /// another surface.

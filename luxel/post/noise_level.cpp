@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/base/vectorize.h"
 
 namespace luxel::post {
@@ -103,18 +103,20 @@ Level level_of(const Window& window) {
 
 }  // namespace
 
-NoiseLevel noise_level(const Neighbourhood& n, std::span<const Rgb> values,
-                       std::span<const float> variance) {
+Result<NoiseLevel> noise_level(const Neighbourhood& n, std::span<const Rgb> values,
+                               std::span<const float> variance, Team* team, Progress& progress) {
   std::vector<Difference> difference(values.size());
-  parallel_for(values.size(), kBlockTexels, [&](size_t begin, size_t end) {
+  const auto differ = [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (n.place[i].spacing > 0)
         difference[i] = mixed_difference(n, uint32_t(i), values, variance);
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, values.size(), kBlockTexels, progress, differ,
+                                std::span(difference)));
   NoiseLevel level;
   level.variance.assign(values.size(), 0.0f);
   level.per_channel.assign(values.size(), {1, 1, 1});
-  parallel_for(values.size(), kBlockTexels, [&](size_t begin, size_t end) {
+  const auto find = [&](size_t begin, size_t end) {
     Window window;
     for (size_t i = begin; i < end; ++i) {
       if (n.place[i].spacing <= 0) continue;
@@ -126,7 +128,9 @@ NoiseLevel noise_level(const Neighbourhood& n, std::span<const Rgb> values,
       const Level own = level_of(window);
       level.variance[i] = own.variance, level.per_channel[i] = own.per_channel;
     }
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, values.size(), kBlockTexels, progress, find,
+                                std::span(level.variance), std::span(level.per_channel)));
   return level;
 }
 

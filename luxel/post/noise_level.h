@@ -21,8 +21,9 @@ struct NoiseLevel {
 /// [Immerkaer96] has the variance of one texel and holds nothing of light that is the sum of a
 /// function of x and one of y. The median of r^2 over what is stated for it, taken around each
 /// texel, says by how much the statement is too large; edges of light, which fill less than half
-/// of the window, do not move it. It is never taken to be too small.
-NoiseLevel noise_level(const Neighbourhood& n, std::span<const Rgb> values,
-                       std::span<const float> variance);
+/// of the window, do not move it. It is never taken to be too small. Members of a team share the
+/// texels out; null: there is none. Errors: cancelled, another member gives up.
+Result<NoiseLevel> noise_level(const Neighbourhood& n, std::span<const Rgb> values,
+                               std::span<const float> variance, Team* team, Progress& progress);
 
 }  // namespace luxel::post

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 
 namespace luxel::post {
 namespace {
@@ -76,12 +76,15 @@ bool is_noisy(const Neighbourhood& n, std::span<const float> variance, uint32_t 
 
 }  // namespace
 
-std::vector<Firefly> find_fireflies(const Neighbourhood& n, const Outliers& part) {
+Result<std::vector<Firefly>> find_fireflies(const Neighbourhood& n, const Outliers& part,
+                                            Team* team, Progress& progress) {
   std::vector<float> lowered_to(part.values.size(), INFINITY);
-  parallel_for(part.values.size(), kBlockTexels, [&](size_t begin, size_t end) {
+  const auto look = [&](size_t begin, size_t end) {
     for (uint32_t i = uint32_t(begin); i < end; ++i)
       if (is_noisy(n, part.variance, i)) lowered_to[i] = lowered(n, part, i);
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, part.values.size(), kBlockTexels, progress, look,
+                                std::span(lowered_to)));
   std::vector<Firefly> found;
   for (uint32_t i = 0; i < lowered_to.size(); ++i)
     if (lowered_to[i] < INFINITY) found.push_back({i, lowered_to[i]});

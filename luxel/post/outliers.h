@@ -35,8 +35,10 @@ struct Firefly {
 ///
 /// In direct light no more than kExplainedDirect deviations that the texel itself states: these are
 /// suspects, a spot that lights a single texel among them. They are to be lowered to that
-/// neighbour. In the order of texels.
-std::vector<Firefly> find_fireflies(const Neighbourhood& n, const Outliers& part);
+/// neighbour. In the order of texels. Members of a team share the texels out; null: there is none.
+/// Errors: cancelled, another member gives up.
+Result<std::vector<Firefly>> find_fireflies(const Neighbourhood& n, const Outliers& part,
+                                            Team* team, Progress& progress);
 inline constexpr float kFirefly = 2, kFireflyRadius = 2.6f, kFireflyRadiusOfStrips = 4.6f;
 inline constexpr float kStandsOut = 3, kExplained = 8, kExplainedDirect = 3;
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "luxel/base/share_out.h"
 #include "luxel/base/vectorize.h"
 #include "luxel/post/neighbours.h"
 
@@ -69,6 +70,34 @@ void fill_tile(const Neighbourhood& n, size_t number, int halo, const Clear& cle
       take(cell, j);
     }
 }
+/// Calls visit(texel) for all texels of the number-th square of the atlas.
+template <class Visit>
+void for_texels_of_square(const Neighbourhood& n, size_t number, const Visit& visit) {
+  const size_t across = size_t(tiles_across(n));
+  const int x0 = int(number % across) * kTileSide, y0 = int(number / across) * kTileSide;
+  for (int y = y0; y < y0 + kTileSide; ++y)
+    for (int x = x0; x < x0 + kTileSide; ++x)
+      if (const uint32_t i = texel_at(*n.map, x, y); i != atlas::kNone) visit(i);
+}
+
+/// Gives all members of a team what each has set of `values`, one per texel, for the texels of its
+/// `own` squares. Nothing happens without a team. Errors: those of exchange().
+template <class T>
+Status give_squares(Team* team, std::span<const uint32_t> own, const Neighbourhood& n,
+                    Progress& progress, std::span<T> values) {
+  return exchange(
+      team, own,
+      {tile_count(n),
+       [&](size_t number, ByteWriter& out) {
+         for_texels_of_square(n, number, [&](uint32_t i) { out.put_value(values[i]); });
+       },
+       [&](size_t number, uint32_t, ByteReader& in) {
+         for_texels_of_square(n, number, [&](uint32_t i) { values[i] = in.get_value<T>(); });
+         return in.ok;
+       }},
+      progress);
+}
+
 /// Calls visit(texel, cell) for all texels of the tile's square.
 template <class Visit>
 void for_texels_of(const Neighbourhood& n, const TexelTile& tile, int halo, const Visit& visit) {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/facet.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/clear_runs.h"
@@ -90,7 +90,7 @@ struct Search {
     return is_clear(scene, atlas, map, tracer, run, {-rounding_m, 3 * height, 0, false});
   }
 
-  std::vector<uint8_t> open_ways(Progress& progress) const;
+  Result<std::vector<uint8_t>> open_ways(Team* team, Progress& progress) const;
   template <class IsOpen>
   void find_forward_ways(uint32_t begin, uint32_t end, float height, std::span<uint8_t> ways,
                          const IsOpen& is_open) const;
@@ -141,17 +141,17 @@ void Search::find_forward_ways(uint32_t begin, uint32_t end, float height, std::
 }
 
 /// Per texel a bit for each of kNeighbours: there is one, and no barrier between.
-std::vector<uint8_t> Search::open_ways(Progress& progress) const {
+Result<std::vector<uint8_t>> Search::open_ways(Team* team, Progress& progress) const {
   constexpr size_t kBlock = 2048;
   std::vector<uint8_t> ways(map.texels.size());
-  parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
+  const auto find = [&](size_t begin, size_t end) {
     find_forward_ways(
         uint32_t(begin), uint32_t(end), kLow, ways, [&](uint32_t i, uint32_t j, float step_m) {
           return !barrier_between(scene, atlas, tracer, chart_of(i), place(i), place(j), step_m);
         });
     progress.advance(end - begin);
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, ways.size(), kBlock, progress, find, std::span(ways)));
   for (uint32_t i = 0; i < ways.size(); ++i)
     for (size_t k = 0; k < kHalf; ++k)
       if (ways[i] >> k & 1) ways[neighbour(i, kNeighbours[k])] |= uint8_t(1u << (k + kHalf));
@@ -257,23 +257,19 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
   return Plane{normal, dot(normal, to_double(scene::world_position(scene, lowest.point())))};
 }
 
-std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                             const atlas::TexelMap& map,
-                                             const trace::RayTracer& tracer, Progress& progress) {
+Result<std::vector<atlas::PartedPoints>> find_parted(
+    const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::TexelMap& map,
+    const trace::RayTracer& tracer, Progress& progress, Team* team) {
   constexpr size_t kBlock = 256;
   progress.begin("walls", 2 * map.texels.size());
   std::vector<Openness> openness(map.texels.size());
   const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), openness};
-  const std::vector<uint8_t> ways = search.open_ways(progress);
-  std::vector<std::vector<atlas::PartedPoints>> found((ways.size() + kBlock - 1) / kBlock);
-  parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
-    found[begin / kBlock] = search.parted(uint32_t(begin), uint32_t(end), ways);
-    progress.advance(end - begin);
-  });
-  std::vector<atlas::PartedPoints> all;
-  for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
-  return all;
+  LUXEL_TRY(const std::vector<uint8_t> ways, search.open_ways(team, progress));
+  return share_lists<atlas::PartedPoints>(
+      team, ways.size(), kBlock, progress, [&](size_t begin, size_t end) {
+        progress.advance(end - begin);
+        return search.parted(uint32_t(begin), uint32_t(end), ways);
+      });
 }
 
 bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -294,15 +290,15 @@ bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
   return false;
 }
 
-void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
-                         const atlas::TexelMap& map, const trace::RayTracer& tracer,
-                         const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress) {
+Status for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const atlas::TexelMap& map, const trace::RayTracer& tracer,
+                           const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress,
+                           Team* team) {
   constexpr size_t kBlock = 2048;
   progress.begin("walls", map.texels.size());
   const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), {}};
   std::vector<uint8_t> ways(map.texels.size());
-  parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
+  const auto find = [&](size_t begin, size_t end) {
     search.find_forward_ways(
         uint32_t(begin), uint32_t(end), kFoot, ways, [&](uint32_t i, uint32_t j, float step_m) {
           const uint32_t chart = search.chart_of(i);
@@ -310,10 +306,12 @@ void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                                  {search.place(j), chart}, step_m);
         });
     progress.advance(end - begin);
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, ways.size(), kBlock, progress, find, std::span(ways)));
   for (uint32_t i = 0; i < ways.size(); ++i)
     for (size_t k = 0; k < kHalf; ++k)
       if (ways[i] >> k & 1) visit(i, search.neighbour(i, kNeighbours[k]));
+  return {};
 }
 
 }  // namespace luxel::transport

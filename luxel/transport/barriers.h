@@ -11,6 +11,8 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cut_charts.h"
 #include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::transport {
@@ -39,11 +41,11 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
 /// and both in the open, that a barrier parts, and around which no way leads from neighbour to
 /// neighbour within three texels; of those two texels apart the ones with a barrier, or no texel,
 /// right beside the first. A look-up mixes both, or one with a hidden texel between them that
-/// has the light of the other. In the order of the texels; not whole when cancelled. The stage
-/// "walls".
-std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                             const atlas::TexelMap& map,
-                                             const trace::RayTracer& tracer, Progress& progress);
+/// has the light of the other. In the order of the texels. The members of a team share the texels
+/// out. The stage "walls". Errors: cancelled, another member of the team gives up.
+Result<std::vector<atlas::PartedPoints>> find_parted(
+    const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::TexelMap& map,
+    const trace::RayTracer& tracer, Progress& progress, Team* team = nullptr);
 
 /// A place of a chart.
 struct ChartPoint {
@@ -60,9 +62,11 @@ bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
 
 /// Calls visit(a, b) for all texels of one chart that are neighbours in a row, a column or a
 /// diagonal and open to each other (is_open_between), once for each pair, in the order of the
-/// texels; not for all when cancelled. The stage "walls".
-void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
-                         const atlas::TexelMap& map, const trace::RayTracer& tracer,
-                         const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress);
+/// texels. The members of a team share the texels out, and all visit all pairs. The stage "walls".
+/// Errors: cancelled, another member of the team gives up.
+Status for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const atlas::TexelMap& map, const trace::RayTracer& tracer,
+                           const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress,
+                           Team* team = nullptr);
 
 }  // namespace luxel::transport

@@ -38,14 +38,14 @@ TEST(Barriers, AreSearchedWithProgress) {
   floor.add_box({0.99f, 0, 0}, {1.0f, 1, 2});
   const trace::RayTracer rays = floor.tracer();
   Progress progress;
-  EXPECT_FALSE(find_parted(floor.scene, floor.atlas, floor.map, rays, progress).empty());
+  EXPECT_FALSE(find_parted(floor.scene, floor.atlas, floor.map, rays, progress)->empty());
   const Progress::Snapshot end = progress.snapshot();
   EXPECT_EQ(end.stage, "walls");
   EXPECT_EQ(end.total, 2 * floor.map.texels.size());
   EXPECT_EQ(end.done, end.total);
   Progress stopped;
   stopped.request_cancel();
-  EXPECT_TRUE(find_parted(floor.scene, floor.atlas, floor.map, rays, stopped).empty());
+  EXPECT_FALSE(find_parted(floor.scene, floor.atlas, floor.map, rays, stopped));
   EXPECT_EQ(stopped.snapshot().done, 0u);
 }
 

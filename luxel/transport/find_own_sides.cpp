@@ -5,7 +5,7 @@
 
 #include "luxel/atlas/cover.h"
 #include "luxel/atlas/footprint.h"
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/clear_runs.h"
@@ -15,6 +15,8 @@ namespace luxel::transport {
 namespace {
 
 constexpr int kRaysForInside = 32;
+/// Texels that a thread, or a member of a team, takes at a time.
+constexpr size_t kBlock = 1024;
 
 /// Neighbours on the map.
 struct Neighbours {
@@ -68,8 +70,7 @@ struct WallSearch : TexelSpots {
                           std::span<uint8_t> parted) const;
   bool has_clear_lines(TexelRun run) const;
   std::vector<Neighbours> blocked(uint32_t begin, uint32_t end) const;
-  std::vector<Neighbours> blocked() const;
-  Walls find_walls() const;
+  Result<Walls> find_walls(Team* team, Progress& progress) const;
 };
 
 /// Whether a wall stands between two neighbours that do not see each other. Around the corner of a
@@ -185,32 +186,25 @@ std::vector<Neighbours> WallSearch::blocked(uint32_t begin, uint32_t end) const 
   return pairs;
 }
 
-std::vector<Neighbours> WallSearch::blocked() const {
-  constexpr size_t kBlock = 1024;
-  const size_t count = in.map.texels.size();
-  std::vector<std::vector<Neighbours>> found((count + kBlock - 1) / kBlock);
-  parallel_for(count, kBlock, [&](size_t begin, size_t end) {
-    found[begin / kBlock] = blocked(uint32_t(begin), uint32_t(end));
-  });
-  std::vector<Neighbours> all;
-  for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
-  return all;
-}
-
 bool WallSearch::is_at_border(uint32_t texel) const {
   for (int k = 0; k < 9; ++k)
     if (beside(texel, k % 3 - 1, k / 3 - 1) == atlas::kNone) return true;
   return false;
 }
 
-Walls WallSearch::find_walls() const {
+Result<Walls> WallSearch::find_walls(Team* team, Progress& progress) const {
   const size_t count = in.map.texels.size();
-  const std::vector<Neighbours> pairs = blocked();
+  LUXEL_TRY(const std::vector<Neighbours> pairs,
+            share_lists<Neighbours>(team, count, kBlock, progress, [&](size_t begin, size_t end) {
+              return blocked(uint32_t(begin), uint32_t(end));
+            }));
   std::vector<uint8_t> is_parted(pairs.size());
   Walls out{std::vector<uint8_t>(count), std::vector<uint8_t>(count)};
-  parallel_for(pairs.size(), 16, [&](size_t begin, size_t end) {
+  const auto find_parted = [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) is_parted[k] = parts(pairs[k]);
-  });
+  };
+  LUXEL_TRY_STATUS(
+      share_ranges(team, pairs.size(), 16, progress, find_parted, std::span(is_parted)));
   for (size_t k = 0; k < pairs.size(); ++k) {
     out.beside[pairs[k].a] = out.beside[pairs[k].b] = 1;
     if (is_parted[k]) out.parted[pairs[k].a] = out.parted[pairs[k].b] = 1;
@@ -221,23 +215,26 @@ Walls WallSearch::find_walls() const {
   for (uint32_t i = 0; i < count; ++i)
     if (!out.parted[i] && (out.beside[i] || is_at_border(i))) which.push_back(i);
   const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
-  parallel_for(which.size(), 64, [&](size_t begin, size_t end) {
+  std::vector<uint8_t> parted(which.size());
+  const auto look_within = [&](size_t begin, size_t end) {
     Outlines outlines;
     for (size_t k = begin; k < end; ++k)
       add_outline(which[k], uint32_t(k - begin), cover.of(k), outlines);
-    std::vector<uint8_t> parted(end - begin);
-    find_parted_within(std::span(which).subspan(begin, end - begin), outlines, parted);
-    for (size_t k = begin; k < end; ++k) out.parted[which[k]] = parted[k - begin];
-  });
+    find_parted_within(std::span(which).subspan(begin, end - begin), outlines,
+                       std::span(parted).subspan(begin, end - begin));
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, which.size(), 64, progress, look_within, std::span(parted)));
+  for (size_t k = 0; k < which.size(); ++k) out.parted[which[k]] = parted[k];
   return out;
 }
 
 /// Per texel a bit: something leans over its sample.
-std::vector<uint64_t> find_under(const OwnSides& in) {
-  constexpr size_t kBlock = 1024;  // whole words
+Result<std::vector<uint64_t>> find_under(const OwnSides& in, Team* team, Progress& progress) {
+  constexpr size_t kWords = kBlock / 64;
   const size_t count = in.map.texels.size();
   std::vector<uint64_t> out((count + 63) / 64);
-  parallel_for(count, kBlock, [&](size_t begin, size_t end) {
+  const auto find = [&](size_t first_word, size_t end_word) {
+    const size_t begin = 64 * first_word, end = std::min(64 * end_word, count);
     SpotMaker maker{in.scene, in.atlas};
     std::vector<trace::Ray> rays;
     for (size_t i = begin; i < end; ++i)
@@ -246,20 +243,29 @@ std::vector<uint64_t> find_under(const OwnSides& in) {
     in.tracer.occluded(rays, blocked);
     for (size_t i = begin; i < end; ++i)
       if (blocked[i - begin]) out[i / 64] |= uint64_t(1) << (i % 64);
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, out.size(), kWords, progress, find, std::span(out)));
   return out;
 }
 
 }  // namespace
 
-OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
-                        const atlas::TexelMap& map, const trace::RayTracer& tracer) {
+Result<OwnSides> find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                const atlas::TexelMap& map, const trace::RayTracer& tracer,
+                                Team* team, Progress& progress) {
   OwnSides out{scene, atlas, map, tracer};
-  out.under = find_under(out);
+  LUXEL_TRY(out.under, find_under(out, team, progress));
   std::vector<Inside> inside(map.texels.size());
-  const Walls walls = WallSearch{{out}, scene::world_bounds(scene).diagonal(), inside}.find_walls();
+  const WallSearch search{{out}, scene::world_bounds(scene).diagonal(), inside};
+  LUXEL_TRY(const Walls walls, search.find_walls(team, progress));
   out.mixed = blocks_of(map, walls.parted), out.beside_solids = blocks_of(map, walls.beside);
   return out;
+}
+
+OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
+                        const atlas::TexelMap& map, const trace::RayTracer& tracer) {
+  Progress nobody;
+  return *find_own_sides(scene, atlas, map, tracer, nullptr, nobody);  // nothing can fail
 }
 
 }  // namespace luxel::transport

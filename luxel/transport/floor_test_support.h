@@ -61,19 +61,19 @@ struct Floor {
   std::vector<atlas::PartedPoints> parted() {
     const trace::RayTracer rays = tracer();
     Progress progress;
-    return find_parted(scene, atlas, map, rays, progress);
+    return *find_parted(scene, atlas, map, rays, progress);
   }
   /// move_samples_out_of_solids() with the tracer that tracer() gave.
   MovedSamples move_samples(const trace::RayTracer& rays) {
     Progress progress;
-    return move_samples_out_of_solids(scene, atlas, rays, map, progress);
+    return *move_samples_out_of_solids(scene, atlas, rays, map, progress);
   }
   /// move_samples_near_changes(), too.
   MovedSamples move_samples_near(std::span<const Box3> boxes,
                                  std::span<const uint32_t> near_back_faces,
                                  const trace::RayTracer& rays) {
     Progress progress;
-    return move_samples_near_changes(scene, atlas, rays, boxes, near_back_faces, map, progress);
+    return *move_samples_near_changes(scene, atlas, rays, boxes, near_back_faces, map, progress);
   }
 };
 

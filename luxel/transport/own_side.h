@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::transport {
@@ -47,6 +50,11 @@ enum class MayBeInside : bool { no, yes };
 /// Samples inside of solids do not count.
 OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                         const atlas::TexelMap& map, const trace::RayTracer& tracer);
+/// The same, shared out among the members of a team, if there is one. Errors: cancelled, another
+/// member gives up.
+Result<OwnSides> find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                const atlas::TexelMap& map, const trace::RayTracer& tracer,
+                                Team* team, Progress& progress);
 
 /// Where light at a point is read: lookup_place() where its four texels have one side, else the
 /// nearest place between those of them whose samples it sees; else the nearest of the texels around

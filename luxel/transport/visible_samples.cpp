@@ -7,6 +7,7 @@
 
 #include "luxel/atlas/cover.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/back_faces.h"
@@ -198,21 +199,22 @@ TexelRun run_at(const atlas::TexelMap& map, std::span<const uint32_t> texels, si
 }
 
 /// Looks at some texels' samples, and sets what is found per texel of the map.
-void look_around(const Probe& probe, std::span<const uint32_t> texels, const atlas::TexelMap& map,
-                 std::span<Found> found, Progress& progress) {
+Status look_around(const Probe& probe, std::span<const uint32_t> texels, const atlas::TexelMap& map,
+                   std::span<Found> found, Team* team, Progress& progress) {
   constexpr size_t kBlock = 2048;
-  parallel_for(texels.size(), kBlock, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) return;
+  std::vector<Found> found_here(texels.size());
+  const auto look = [&](size_t begin, size_t end) {
     const std::span<const uint32_t> block = texels.subspan(begin, end - begin);
     // Most runs have nothing near them: feelers look at the others.
-    std::vector<uint32_t> looking;
+    std::vector<size_t> looking;
     std::vector<trace::Ray> rays;
     for (size_t k = 0; k < block.size();) {
       const TexelRun run = run_at(map, block, k);
+      const size_t first = k;
       k += run.count;
       if (probe.has_clear_feelers(map, run)) continue;
-      for (uint32_t i = run.first; i < run.first + run.count; ++i)
-        looking.push_back(i), probe.add_feelers(map.texels[i], rays);
+      for (uint32_t i = 0; i < run.count; ++i)
+        looking.push_back(begin + first + i), probe.add_feelers(map.texels[run.first + i], rays);
     }
     std::vector<trace::Hit> hits(rays.size());
     probe.tracer.closest_hits(rays, hits);
@@ -221,11 +223,15 @@ void look_around(const Probe& probe, std::span<const uint32_t> texels, const atl
       if (std::none_of(first, first + kFeelers,
                        [](const trace::Hit& hit) { return hit.found() && hit.back_face; }))
         continue;
-      const bool open = probe.in_the_open(map.texels[looking[k]].sample);
-      found[looking[k]] = open ? Found::back_near : Found::enclosed;
+      const bool open = probe.in_the_open(map.texels[texels[looking[k]]].sample);
+      found_here[looking[k]] = open ? Found::back_near : Found::enclosed;
     }
     progress.advance(end - begin);
-  });
+  };
+  LUXEL_TRY_STATUS(
+      share_ranges(team, texels.size(), kBlock, progress, look, std::span(found_here)));
+  for (size_t k = 0; k < texels.size(); ++k) found[texels[k]] = found_here[k];
+  return {};
 }
 
 uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
@@ -236,17 +242,20 @@ uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
 /// Finds the borders of enclosed regions whose backs are farther away, such as the floor under a
 /// shell without a bottom: between texels of a lattice of which one is enclosed and another is not
 /// all are looked at.
-void look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found) {
+Status look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found,
+                        Team* team, Progress& progress) {
   // Whether the texels of a lattice are enclosed.
   constexpr int kStep = 4;
   const int across = (map.resolution + kStep - 1) / kStep;
   const auto on_lattice = [&](int u, int v) { return texel_at(map, u * kStep, v * kStep); };
   std::vector<uint8_t> enclosed(size_t(across) * size_t(across));
-  parallel_for(enclosed.size(), 64, [&](size_t begin, size_t end) {
+  const auto look_at_lattice = [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k)
       if (const uint32_t i = on_lattice(int(k) % across, int(k) / across); i != atlas::kNone)
         enclosed[k] = !probe.in_the_open(map.texels[i].sample);
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, enclosed.size(), 64, progress, look_at_lattice,
+                                std::span(enclosed)));
   const auto is_enclosed_at = [&](int u, int v) {
     return u >= 0 && v >= 0 && u < across && v < across &&
            enclosed[size_t(v) * size_t(across) + size_t(u)];
@@ -266,24 +275,27 @@ void look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<
         for (int x = (u - 1) * kStep + 1; x < (u + 1) * kStep; ++x)
           if (const uint32_t i = texel_at(map, x, y); i != atlas::kNone) look[i] = 1;
     }
-  parallel_for(look.size(), 256, [&](size_t begin, size_t end) {
+  const auto look_at_texels = [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (look[i] && found[i] == Found::nothing && !probe.in_the_open(map.texels[i].sample))
         found[i] = Found::enclosed;
-  });
+  };
+  return share_ranges(team, look.size(), 256, progress, look_at_texels, found);
 }
 
 /// Looks at the samples of small charts.
-void look_at_small_charts(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found) {
+Status look_at_small_charts(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found,
+                            Team* team, Progress& progress) {
   std::vector<uint32_t> texels(probe.atlas.chart_count);
   const auto chart_of = [&](size_t i) { return probe.atlas.chart[map.texels[i].triangle_number]; };
   for (size_t i = 0; i < found.size(); ++i) ++texels[chart_of(i)];
-  parallel_for(found.size(), 256, [&](size_t begin, size_t end) {
+  const auto look = [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (found[i] == Found::nothing && texels[chart_of(i)] <= kSmallChart &&
           !probe.in_the_open(map.texels[i].sample))
         found[i] = Found::enclosed;
-  });
+  };
+  return share_ranges(team, found.size(), 256, progress, look, found);
 }
 
 /// Those that are enclosed and their neighbours in the map.
@@ -309,32 +321,36 @@ void move_to(const atlas::Atlas& atlas, const Place& place, atlas::Texel& texel)
 }
 
 /// Opens the samples of the map's texels, of which only some can have backs near them.
-MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atlas::TexelMap& map,
-                       Progress& progress) {
+Result<MovedSamples> move_some(const Probe& probe, std::span<const uint32_t> texels,
+                               atlas::TexelMap& map, Team* team, Progress& progress) {
   std::vector<Found> found(map.texels.size());
   progress.begin("samples", texels.size());
-  look_around(probe, texels, map, found, progress);
+  LUXEL_TRY_STATUS(look_around(probe, texels, map, found, team, progress));
   MovedSamples out;
   for (uint32_t i = 0; i < found.size(); ++i)
     if (found[i] != Found::nothing) out.near_back_faces.push_back(i);
-  look_for_regions(probe, map, found);
-  look_at_small_charts(probe, map, found);
+  LUXEL_TRY_STATUS(look_for_regions(probe, map, found, team, progress));
+  LUXEL_TRY_STATUS(look_at_small_charts(probe, map, found, team, progress));
   const std::vector<uint32_t> edge = at_the_edge(map, found);
   const ChartTriangles charts = triangles_of_charts(probe.atlas);
-  parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
+  std::vector<atlas::Texel> moved(edge.size());
+  std::vector<uint8_t> is_moved(edge.size());
+  const auto move = [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       const Found before = found[edge[k]];
-      atlas::Texel& texel = map.texels[edge[k]];
+      atlas::Texel& texel = moved[k] = map.texels[edge[k]];
       if (const auto place = probe.open_place(texel, before != Found::enclosed)) {
-        texel.sample = *place, found[edge[k]] = Found::moved;
+        texel.sample = *place, is_moved[k] = 1;
       } else if (before == Found::enclosed) {
         if (const auto other = probe.open_place(texel, charts))
-          move_to(probe.atlas, *other, texel), found[edge[k]] = Found::moved;
+          move_to(probe.atlas, *other, texel), is_moved[k] = 1;
       }
     }
-  });
-  for (uint32_t i = 0; i < found.size(); ++i)
-    if (found[i] == Found::moved) out.moved.push_back(i);
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, edge.size(), 64, progress, move, std::span(moved),
+                                std::span(is_moved)));
+  for (size_t k = 0; k < edge.size(); ++k)
+    if (is_moved[k]) map.texels[edge[k]] = moved[k], out.moved.push_back(edge[k]);
   return out;
 }
 
@@ -368,19 +384,23 @@ std::vector<float> reaches_to(const Probe& probe, std::span<const Box3> boxes) {
 
 }  // namespace
 
-MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                        const trace::RayTracer& tracer, atlas::TexelMap& map,
-                                        Progress& progress) {
+Result<MovedSamples> move_samples_out_of_solids(const scene::Scene& scene,
+                                                const atlas::Atlas& atlas,
+                                                const trace::RayTracer& tracer,
+                                                atlas::TexelMap& map, Progress& progress,
+                                                Team* team) {
   std::vector<uint32_t> all(map.texels.size());
   std::iota(all.begin(), all.end(), 0);
-  return move_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map,
+  return move_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map, team,
                    progress);
 }
 
-MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                       const trace::RayTracer& tracer, std::span<const Box3> boxes,
-                                       std::span<const uint32_t> near_back_faces,
-                                       atlas::TexelMap& map, Progress& progress) {
+Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene,
+                                               const atlas::Atlas& atlas,
+                                               const trace::RayTracer& tracer,
+                                               std::span<const Box3> boxes,
+                                               std::span<const uint32_t> near_back_faces,
+                                               atlas::TexelMap& map, Progress& progress) {
   const Probe probe{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
   const std::vector<float> reaches = reaches_to(probe, boxes);
   std::vector<uint8_t> look(map.texels.size());
@@ -396,7 +416,7 @@ MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::A
   std::vector<uint32_t> texels;
   for (uint32_t i = 0; i < look.size(); ++i)
     if (look[i]) texels.push_back(i);
-  return move_some(probe, texels, map, progress);
+  return move_some(probe, texels, map, nullptr, progress);
 }
 
 }  // namespace luxel::transport

@@ -83,7 +83,7 @@ std::optional<std::string> ignored_density(const scene::Scene& scene, const atla
 
 /// Splits sides and lays out what was read.
 Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& scene,
-                                 Progress& progress) {
+                                 Progress& progress, Team* team = nullptr) {
   LUXEL_TRY(SettledResolution settled, settle_resolution(settings, scene, progress));
   const SidesParams params{
       .uv = settings.uv,
@@ -97,7 +97,7 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
     LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
   }
   settled.settings.uv = sides.uv;
-  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress, team));
   layout.wrong_in_uv1 = sides.wrong_in_uv1, layout.warnings = std::move(sides.warnings);
   if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
     layout.warnings.push_back(std::move(text));
@@ -107,12 +107,13 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
 }
 
 /// The layout of what was read, anew or as it was kept.
-Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, BakeCache* cache,
-                            Progress& progress) {
+Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene,
+                            const Keepers& keepers, Progress& progress) {
+  BakeCache* const cache = keepers.cache;
   if (KeptBake* found = cache ? cache->found() : nullptr)
     return lay_out_again(settings, std::move(found->layout), cache->change().boxes, scene,
                          progress);
-  if (!cache || !cache->rays()) return lay_out_anew(settings, scene, progress);
+  if (!cache || !cache->rays()) return lay_out_anew(settings, scene, progress, keepers.team);
   std::vector<std::vector<uint32_t>> numbers;
   const size_t materials = scene.materials.size();
   for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
@@ -129,7 +130,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   if (keepers.checkpoint && find_solver(settings.solver)->can.parts)
     LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
   if (keepers.cache) keepers.cache->open(bake.scene, progress);
-  LUXEL_TRY(TexelLayout layout, lay_out(settings, bake.scene, keepers.cache, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out(settings, bake.scene, keepers, progress));
   bake.warnings.insert(bake.warnings.end(), layout.warnings.begin(), layout.warnings.end());
   LUXEL_TRY_STATUS(stopped(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
@@ -189,14 +190,14 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   hemicube::Observer inside;
   if (watcher.hemicube) inside = watcher.hemicube(input), observer.hemicube = &inside;
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
-  LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   std::vector<uint32_t> regions;
   if (settings.repair_leaks) {
-    regions = connected_texels(input, bake.light.hidden, progress);
-    LUXEL_TRY_STATUS(stopped(progress));
+    LUXEL_TRY(regions, connected_texels(input, bake.light.hidden, progress, keepers.team));
   }
   if (settings.denoise)
-    LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress));
+    LUXEL_TRY_STATUS(
+        denoise_light(input, settings, regions, bake.light, progress, keepers.team));
+  LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
   const std::string dark =

@@ -44,7 +44,8 @@ Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
 }  // namespace
 
 Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
-                     std::span<const uint32_t> regions, TexelLight& light, Progress& progress) {
+                     std::span<const uint32_t> regions, TexelLight& light, Progress& progress,
+                     Team* team) {
   LUXEL_CHECK(light.variance.size() == light.irradiance.size());
   const post::DenoiseParams params;
   const post::TexelGeometry places{.scene = in.scene,
@@ -64,7 +65,7 @@ Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
   };
   if (!light.direct.empty())
     parts.push_back({light.direct, light.direct_variance, true, look_again});
-  LUXEL_TRY_STATUS(post::denoise(places, parts, params, progress));
+  LUXEL_TRY_STATUS(post::denoise(places, parts, params, progress, team));
   for (size_t i = 0; i < light.direct.size(); ++i) rest[i] += light.direct[i];
   light.irradiance = std::move(rest);
   return {};

@@ -63,7 +63,9 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
   // Hidden texels have no light to tell, so seams are stitched without them, and they take what
   // their neighbours have then.
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
-  if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
+  if (settings.repair_leaks) {
+    LUXEL_TRY(seams, open_seams(bake.scene, bake.atlas, tracer, seams, progress));
+  }
   const post::SeamTexels texels{hidden, regions};
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, texels);
   bake.seams = seams.size();

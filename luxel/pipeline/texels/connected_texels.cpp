@@ -85,18 +85,19 @@ void join_over(const light::TexelScene& in, std::span<const uint8_t> hidden, con
 
 }  // namespace
 
-std::vector<uint32_t> connected_texels(const light::TexelScene& in, std::span<const uint8_t> hidden,
-                                       Progress& progress) {
+Result<std::vector<uint32_t>> connected_texels(const light::TexelScene& in,
+                                               std::span<const uint8_t> hidden, Progress& progress,
+                                               Team* team) {
   Joined regions(in.map.texels.size());
-  transport::for_open_neighbours(
-      in.scene, in.atlas, in.map, in.tracer,
-      [&](uint32_t a, uint32_t b) {
-        if (!hidden[a] && !hidden[b]) regions.join(a, b);
-      },
-      progress);
-  for (const post::Seam& seam : open_seams(in.scene, in.atlas, in.tracer,
-                                           post::find_seams(in.scene, in.atlas, kMaxAngle_rad)))
-    join_over(in, hidden, seam, regions);
+  const auto join = [&](uint32_t a, uint32_t b) {
+    if (!hidden[a] && !hidden[b]) regions.join(a, b);
+  };
+  LUXEL_TRY_STATUS(transport::for_open_neighbours(in.scene, in.atlas, in.map, in.tracer, join,
+                                                  progress, team));
+  LUXEL_TRY(const std::vector<post::Seam> open,
+            open_seams(in.scene, in.atlas, in.tracer,
+                       post::find_seams(in.scene, in.atlas, kMaxAngle_rad), progress, team));
+  for (const post::Seam& seam : open) join_over(in, hidden, seam, regions);
   for (uint32_t i = 0; i < regions.least.size(); ++i) regions.least[i] = regions.root(i);
   return std::move(regions.least);
 }

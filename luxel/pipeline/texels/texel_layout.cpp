@@ -6,7 +6,7 @@
 #include "luxel/atlas/cut_charts.h"
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/visible_samples.h"
@@ -36,14 +36,14 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
 /// at another density, so that barriers lie between other texels than before: they are searched
 /// again, and what is parted in the end is counted.
 Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
-                       Progress& progress) {
+                       Progress& progress, Team* team) {
   constexpr int kMostTimes = 2;
   atlas::AtlasParams grouped = params;
   uint32_t cuts = 0;
   for (int k = 0;; ++k) {
-    const auto parted =
-        transport::find_parted(scene, layout.atlas, layout.map, layout.tracer, progress);
-    LUXEL_TRY_STATUS(stopped(progress));
+    LUXEL_TRY(const std::vector<atlas::PartedPoints> parted,
+              transport::find_parted(scene, layout.atlas, layout.map, layout.tracer, progress,
+                                     team));
     layout.repair.parted = parted.size(), layout.repair.cuts = cuts;
     if (layout.atlas.kept || k == kMostTimes || parted.size() < atlas::kFewestParted) return {};
     atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted, grouped.group);
@@ -108,15 +108,15 @@ void take_moved(transport::MovedSamples opened, TexelLayout& layout) {
 }  // namespace
 
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
-                                   Progress& progress) {
+                                   Progress& progress, Team* team) {
   const atlas::AtlasParams params = params_of(settings);
   LUXEL_TRY(TexelLayout layout, lay_out_once(params, scene, progress));
   if (settings.repair_leaks) {
-    LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress));
-    take_moved(transport::move_samples_out_of_solids(scene, layout.atlas, layout.tracer, layout.map,
-                                                     progress),
-               layout);
-    LUXEL_TRY_STATUS(stopped(progress));
+    LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress, team));
+    LUXEL_TRY(transport::MovedSamples opened,
+              transport::move_samples_out_of_solids(scene, layout.atlas, layout.tracer, layout.map,
+                                                    progress, team));
+    take_moved(std::move(opened), layout);
   }
   layout.repair.overlapping = atlas::overlapping_texels(layout.atlas, layout.map);
   layout.stats = atlas::atlas_stats(scene, layout.atlas, layout.map);
@@ -165,10 +165,10 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                      std::move(kept.warnings)};
   if (!kept.wrong_in_uv1.empty()) layout.wrong_in_uv1 = kept.wrong_in_uv1.front();
   if (!same_places && settings.repair_leaks) {
-    take_moved(transport::move_samples_near_changes(scene, layout.atlas, layout.tracer, boxes,
-                                                    layout.near_back_faces, layout.map, progress),
-               layout);
-    LUXEL_TRY_STATUS(stopped(progress));
+    LUXEL_TRY(transport::MovedSamples opened,
+              transport::move_samples_near_changes(scene, layout.atlas, layout.tracer, boxes,
+                                                   layout.near_back_faces, layout.map, progress));
+    take_moved(std::move(opened), layout);
   }
   return layout;
 }
@@ -186,17 +186,17 @@ post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
   };
 }
 
-std::vector<post::Seam> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                   const trace::RayTracer& tracer, std::vector<post::Seam> seams) {
+Result<std::vector<post::Seam>> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                           const trace::RayTracer& tracer,
+                                           std::span<const post::Seam> seams, Progress& progress,
+                                           Team* team) {
   constexpr size_t kBlock = 256;
-  std::vector<std::vector<post::Seam>> open((seams.size() + kBlock - 1) / kBlock);
-  parallel_for(seams.size(), kBlock, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      add_open(scene, atlas, tracer, seams[i], open[begin / kBlock]);
-  });
-  std::vector<post::Seam> all;
-  for (const auto& block : open) all.insert(all.end(), block.begin(), block.end());
-  return all;
+  return share_lists<post::Seam>(
+      team, seams.size(), kBlock, progress, [&](size_t begin, size_t end) {
+        std::vector<post::Seam> open;
+        for (size_t i = begin; i < end; ++i) add_open(scene, atlas, tracer, seams[i], open);
+        return open;
+      });
 }
 
 }  // namespace luxel::pipeline

@@ -44,9 +44,10 @@ struct TexelLayout {
 /// settings.repair_leaks, samples move out of solids, and where barriers stand on charts
 /// (luxel/transport/barriers.h) the scene's triangles are cut along them and laid out anew, unless
 /// TEXCOORD_1 is kept. `scene` changes by these cuts and must stay where it is while the tracer is
-/// used.
+/// used. The members of a team share out what asks for rays. Errors: no memory, cancelled, another
+/// member of the team gives up.
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
-                                   Progress& progress);
+                                   Progress& progress, Team* team = nullptr);
 
 /// A layout that is kept for later bakes: of what it is made, and what it became.
 struct KeptLayout {
@@ -77,8 +78,11 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
 post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const atlas::TexelMap& map, const trace::RayTracer& tracer);
 
-/// Seams without the stretches on which a barrier stands: there light differs for good.
-std::vector<post::Seam> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                   const trace::RayTracer& tracer, std::vector<post::Seam> seams);
+/// Seams without the stretches on which a barrier stands: there light differs for good. The members
+/// of a team share the seams out. Errors: cancelled, another member of the team gives up.
+Result<std::vector<post::Seam>> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                           const trace::RayTracer& tracer,
+                                           std::span<const post::Seam> seams, Progress& progress,
+                                           Team* team = nullptr);
 
 }  // namespace luxel::pipeline

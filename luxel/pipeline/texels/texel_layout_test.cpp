@@ -60,7 +60,7 @@ TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
   ASSERT_TRUE(again);
   atlas::TexelMap map = atlas::rasterise(now, again->atlas);
   const auto all =
-      transport::move_samples_out_of_solids(now, again->atlas, again->tracer, map, kept.progress);
+      *transport::move_samples_out_of_solids(now, again->atlas, again->tracer, map, kept.progress);
   EXPECT_NE(all.moved, kept.layout.repair.moved);
   EXPECT_EQ(again->repair.moved, all.moved);
   EXPECT_EQ(again->near_back_faces, all.near_back_faces);

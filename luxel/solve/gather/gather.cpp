@@ -190,8 +190,9 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   LUXEL_CHECK(!stores.team || !(stores.device || stores.keep || stores.earlier ||
                                 (stores.parts && stores.parts->shares()) || observer.on_estimate));
   const auto start = Clock::now();
-  const transport::OwnSides sides =
-      transport::find_own_sides(scene.scene, scene.atlas, scene.map, scene.tracer);
+  LUXEL_TRY(const transport::OwnSides sides,
+            transport::find_own_sides(scene.scene, scene.atlas, scene.map, scene.tracer,
+                                      stores.team, progress));
   light::TexelScene lit = scene;
   Request in{lit, layers, params, stores, observer, sides};
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};

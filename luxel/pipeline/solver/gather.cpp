@@ -8,6 +8,7 @@
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/output_folder.h"
+#include "luxel/base/share_out.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/rebake.h"
 #include "luxel/pipeline/solver/gather_memory.h"
@@ -58,6 +59,15 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
       is_rms ? "the root mean square error is" : "95 % of texels err by less than", error, why));
 }
 
+/// What a team needs where one process needs `f`; all members take the first one's word.
+Result<gather::Forecast> shared_out(Team* team, gather::Forecast f, Progress& progress) {
+  if (!team) return f;
+  for (double* seconds : {&f.direct_s, &f.supersample_s, &f.trace_s, &f.bounces_s}) {
+    LUXEL_TRY(*seconds, first_of(team, *seconds / double(team->size()), progress));
+  }
+  return f;
+}
+
 /// Makes the first round small enough for `seconds`. The forecast is that of `params`.
 void shrink_first_round(const gather::Forecast& forecast, double seconds,
                         gather::GatherParams& params) {
@@ -86,14 +96,20 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
   const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0 && !stores.device &&
                      settings.part.is_all();
   if (!trial && settings.time_budget_s <= 0) return {};
-  LUXEL_TRY(const gather::Forecast forecast,
-            gather::forecast(in, params, own, kTrialPart, progress));
+  // Each member makes its own trial, of the whole team's part.
+  const int part = kTrialPart * (stores.team ? int(stores.team->size()) : 1);
+  LUXEL_TRY(gather::Forecast forecast, gather::forecast(in, params, own, part, progress));
+  LUXEL_TRY(forecast, shared_out(stores.team, forecast, progress));
   progress.finish();
   if (settings.time_budget_s <= 0) {
     progress.expect(stages_of(forecast));
     return {};
   }
-  double left = settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
+  LUXEL_TRY(double left,
+            first_of(stores.team,
+                     settings.time_budget_s -
+                         stage_seconds(progress.stages())["total"].get<double>(),
+                     progress));
   for (const Stage& stage : after) left -= stage.seconds;
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(

@@ -108,6 +108,31 @@ TEST_F(BakesOfATeamSlow, HaveTheBitsOfOneProcessForAnyNumber) {
   }
 }
 
+// Other solvers and commands: paths, hemicubes, patches, view factors.
+TEST_F(BakesOfATeam, HaveTheBitsOfOneProcessByOtherSolvers) {
+  const std::string office = scene_file("office.glb") + " --resolution 48 --solver ";
+  for (const std::string more : {office + "reference --samples 16",
+                                 office + "hemicube --max-elements 1500 --hemicube 16",
+                                 office + "matrix --patches 500 --rays 256"})
+    EXPECT_EQ(done_together(2, more), alone(more)) << more;
+}
+
+TEST_F(BakesOfATeam, HaveTheBitsOfOneProcessInTables) {
+  const std::string box = scene_file("cornell-box.glb");
+  const auto result = [&](const std::string& command, const std::string& before) {
+    const fs::path file = scratch_.path / "result.lxr";
+    const CommandResult r = luxel(command + " -o " + file.string(), before);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return slurp(file);
+  };
+  for (const std::string command :
+       {"factors " + box, "factors " + box + " --method rays --samples 4096",
+        "factors " + box + " --method hemicube --samples 4",
+        "relight " + box + " --patches 300 --rays 256 --resolution 32"})
+    EXPECT_EQ(result(command + " --processes-per-node 3", mpirun(3)), result(command, ""))
+        << command;
+}
+
 // By default one process of a node works, with the cores of all. One of them speaks.
 TEST_F(BakesOfATeam, LendCoresToTheOneOfTheirNodeThatWorks) {
   const std::string more = scene_file("cornell-box.glb") + " --resolution 64 --samples 16";

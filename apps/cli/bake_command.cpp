@@ -3,12 +3,11 @@
 #include "apps/cli/bake_summary.h"
 #include "apps/cli/cli.h"
 #include "apps/cli/device_option.h"
+#include "apps/cli/together.h"
 #include "luxel/arguments/bake_options.h"
-#include "luxel/cluster/mpi.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"
-#include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
 
@@ -21,16 +20,6 @@ struct BakeOptions {
   std::string device = "cpu";
   int processes_per_node = 1;
 };
-
-/// "8 processes on 2 nodes: 2 work, the others lend them their cores".
-std::string about_processes(const cluster::Joined& joined) {
-  const int working = joined.team ? int(joined.team->size()) : 1;
-  const std::string all = fmt::format("{} processes on {} node{}", joined.processes, joined.nodes,
-                                      joined.nodes == 1 ? "" : "s");
-  if (working == joined.processes) return all + " work together";
-  return fmt::format("{}: {} work{}, the others lend their cores (--processes-per-node)", all,
-                     working, working == 1 ? "s" : "");
-}
 
 void print_part(const nlohmann::json& part) {
   const int number = part["number"].get<int>(), of = part["of"].get<int>();
@@ -87,23 +76,6 @@ int run_bake(const BakeOptions& options, Team* team) {
       });
 }
 
-/// A bake of processes that mpirun or srun has started together.
-int run_together(BakeOptions options) {
-  auto joined = cluster::join_processes(std::string("luxel ") + pipeline::kVersion,
-                                        options.processes_per_node);
-  if (!joined) return report(joined.error(), options.common);
-  const bool is_first = joined->works && (!joined->team || joined->team->rank() == 0);
-  if (is_first && !options.common.quiet)
-    std::fprintf(stderr, "%s\n", about_processes(*joined).c_str());
-  options.common.in_team = true;
-  // One of them speaks for all.
-  if (!is_first)
-    options.common = {.threads = options.common.threads, .quiet = true, .silent = true};
-  const int code = joined->works ? run_bake(options, joined->team.get()) : kDone;
-  cluster::leave_processes(std::move(*joined), code != kDone);
-  return code;
-}
-
 }  // namespace
 
 void register_bake(CLI::App& app, Action& action) {
@@ -124,17 +96,17 @@ void register_bake(CLI::App& app, Action& action) {
              "reference, what follows paths")
       ->excludes(plan);
   add_bake_table(*bake, options->choice.given);
-  bake->add_option("--processes-per-node", options->processes_per_node,
-                   "Under mpirun or srun: how many processes of each node work, each with a scene "
-                   "of its own; the others lend them their cores")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_processes_per_node(*bake, options->processes_per_node);
   add_common(*bake, options->common);
   bake->callback([options, scene, settings, &action] {
     if (scene->count() == 0 && settings->count() == 0) throw CLI::RequiredError("SCENE");
     action = [options] {
-      return cluster::processes_started() > 1 ? run_together(*options)
-                                              : run_bake(*options, nullptr);
+      return run_together(options->common, options->processes_per_node,
+                          [&](const Common& common, Team* team) {
+                            BakeOptions own = *options;
+                            own.common = common;
+                            return run_bake(own, team);
+                          });
     };
   });
 }

@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/together.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/factors.h"
 #include "luxel/pipeline/settings/settings.h"
@@ -10,6 +11,7 @@ namespace {
 
 struct FactorOptions {
   Common common;
+  int processes_per_node = 1;
   Given reading;
   pipeline::FactorSettings settings;
   std::string max_memory;
@@ -72,7 +74,8 @@ void print_report(const pipeline::FactorReport& r) {
   if (r.smoothing) std::printf("smoothing changed a factor by at most %.1e\n", *r.smoothing);
 }
 
-int run_factors(const FactorOptions& options) {
+/// `team`: null: this process works alone.
+int run_factors(const FactorOptions& options, Team* team) {
   pipeline::FactorSettings settings = options.settings;
   if (!options.max_memory.empty()) {
     const Result<uint64_t> size = pipeline::parse_size(options.max_memory);
@@ -85,7 +88,7 @@ int run_factors(const FactorOptions& options) {
   pipeline::FactorReport report_of_factors;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
-    LUXEL_TRY(report_of_factors, pipeline::view_factors(settings, progress));
+    LUXEL_TRY(report_of_factors, pipeline::view_factors(settings, progress, team));
     return {};
   });
   if (!done) return report(done.error(), options.common);
@@ -130,7 +133,17 @@ void register_factors(CLI::App& app, Action& action) {
       ->capture_default_str();
   add_import(*factors, options->reading);
   add_common(*factors, options->common);
-  factors->callback([options, &action] { action = [options] { return run_factors(*options); }; });
+  add_processes_per_node(*factors, options->processes_per_node);
+  factors->callback([options, &action] {
+    action = [options] {
+      return run_together(options->common, options->processes_per_node,
+                          [&](const Common& common, Team* team) {
+                            FactorOptions own = *options;
+                            own.common = common;
+                            return run_factors(own, team);
+                          });
+    };
+  });
 }
 
 }  // namespace luxel::cli

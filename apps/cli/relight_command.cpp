@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/together.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/play.h"
 #include "luxel/pipeline/command/relight_options.h"
@@ -11,6 +12,7 @@ namespace {
 
 struct RelightOptions {
   Common common;
+  int processes_per_node = 1;
   Given reading, outside, making;
   std::filesystem::path scene, lxr, script, output;
   std::vector<CLI::Option*> of_making;  ///< options that playing does not look at
@@ -48,11 +50,12 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
                1e-6 * json["bytes"]["file"].get<double>());
 }
 
-int run_making(const RelightOptions& options) {
+/// `team`: null: this process works alone.
+int run_making(const RelightOptions& options, Team* team) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error(), options.common);
   return run_and_print(
-      options.common, [&](Progress& progress) { return pipeline::relight(*settings, progress); },
+      options.common, [&](Progress& progress) { return pipeline::relight(*settings, progress, team); },
       [&](const nlohmann::json& json) { print_summary(*settings, json); });
 }
 
@@ -115,7 +118,12 @@ int run_relight(const RelightOptions& options) {
     return report(
         Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out here"},
         options.common);
-  return run_making(options);
+  return run_together(options.common, options.processes_per_node,
+                      [&](const Common& common, Team* team) {
+                        RelightOptions own = options;
+                        own.common = common;
+                        return run_making(own, team);
+                      });
 }
 
 void add_making(CLI::App& relight, RelightOptions& options) {
@@ -145,6 +153,7 @@ void register_relight(CLI::App& app, Action& action) {
     options->of_making.push_back(option);
   for (CLI::Option* option : add_outside_light(*relight, options->outside))
     options->of_making.push_back(option);
+  add_processes_per_node(*relight, options->processes_per_node);
   add_common(*relight, options->common);
   relight->callback([options, &action] { action = [options] { return run_relight(*options); }; });
 }

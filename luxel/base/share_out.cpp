@@ -142,6 +142,19 @@ Result<std::vector<uint32_t>> share_out(Team* team, size_t count, Progress& prog
   return own;
 }
 
+Result<std::vector<uint32_t>> share_out_in_turn(Team* team, size_t count, Progress& progress,
+                                                const std::function<void(size_t)>& work) {
+  std::vector<uint32_t> own;
+  if (team) LUXEL_TRY_STATUS(team->begin_stage(progress));
+  for (size_t piece = 0;; ++piece) {
+    if (team) piece = size_t(std::min<uint64_t>(team->next(1), count));
+    LUXEL_TRY_STATUS(stopped(progress));
+    if (piece >= count) return own;
+    own.push_back(uint32_t(piece));
+    work(piece);
+  }
+}
+
 Status do_own(Team* team, std::span<const uint32_t> own, Progress& progress,
               const std::function<void(size_t)>& work) {
   std::optional<DoneOfTeam> done;
@@ -200,6 +213,21 @@ Status exchange(Team* team, std::span<const uint32_t> own, const PieceExchange& 
     }
   }
   return {};
+}
+
+Result<uint64_t> sum_of_members(Team* team, uint64_t own, Progress& progress) {
+  if (!team) return own;
+  ByteWriter out;
+  out.put_value(own);
+  LUXEL_TRY(const auto all, team->all_gather(out.bytes, progress));
+  uint64_t sum = 0;
+  for (const std::vector<std::byte>& bytes : all) sum += ByteReader{bytes}.get_value<uint64_t>();
+  return sum;
+}
+
+Status leave_rest_to_first(const Team* team) {
+  if (!team || team->rank() == 0) return {};
+  return fail(ErrorCode::parts_missing, "the rest is the work of process 0");
 }
 
 }  // namespace base

@@ -23,6 +23,10 @@ inline namespace base {
 Result<std::vector<uint32_t>> share_out(Team* team, size_t count, Progress& progress,
                                         const std::function<void(size_t piece)>& work);
 
+/// Does the same, one piece after the other at each member: pieces that use all threads themselves.
+Result<std::vector<uint32_t>> share_out_in_turn(Team* team, size_t count, Progress& progress,
+                                                const std::function<void(size_t piece)>& work);
+
 /// Does the same for pieces whose member is known: calls work(piece) for each of `own`.
 Status do_own(Team* team, std::span<const uint32_t> own, Progress& progress,
               const std::function<void(size_t piece)>& work);
@@ -115,6 +119,19 @@ requires std::is_trivially_copyable_v<T> Result<T> first_of(Team* team, T value,
   if (team->rank() == 0) out.put_value(value);
   LUXEL_TRY(const auto all, team->all_gather(out.bytes, progress));
   return ByteReader{all.front()}.template get_value<T>();
+}
+
+/// The sum of a number over all members. Errors: cancelled, another member gives up.
+Result<uint64_t> sum_of_members(Team* team, uint64_t own, Progress& progress);
+
+/// Errors (parts_missing): this is a team's member, and not its first, who does the rest.
+Status leave_rest_to_first(const Team* team);
+
+/// Tells the other members of a team when work has failed. Returns `done`.
+template <class T>
+Result<T> or_give_up(Team* team, Result<T> done) {
+  if (!done && team) team->give_up(done.error());
+  return done;
 }
 
 }  // namespace base

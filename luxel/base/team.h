@@ -42,6 +42,12 @@ class Team {
   /// At the first member: what the others have told since the last call. Thread-safe.
   virtual Done told() = 0;
 
+  /// What all members have given to each other so far: calls of all_gather(), and their bytes.
+  struct Gathered {
+    uint64_t times = 0, bytes = 0;
+  };
+  virtual Gathered gathered() const = 0;
+
   /// This member cannot go on: the others get `error`, with its rank and where it runs.
   virtual void give_up(const Error& error) = 0;
 };

@@ -66,6 +66,10 @@ class ThreadTeam final : public Team {
     }
     return state_->received;
   }
+  Gathered gathered() const override {
+    const std::lock_guard lock(state_->mutex);
+    return {state_->gathers, state_->bytes};
+  }
   void tell(Done done) override {
     const std::lock_guard lock(state_->mutex);
     state_->told.units += done.units, state_->told.skipped += done.skipped;

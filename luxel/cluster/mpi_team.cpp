@@ -82,8 +82,12 @@ class MpiTeam final : public Team {
   Result<std::vector<std::vector<std::byte>>> all_gather(std::span<const std::byte> own,
                                                          Progress& progress) override {
     LUXEL_TRY(const std::vector<int64_t> bytes, gather_headers(int64_t(own.size()), progress));
+    ++gathered_.times;
+    for (const int64_t of_one : bytes) gathered_.bytes += uint64_t(of_one);
     return gather_bytes(own, bytes, progress);
   }
+
+  Gathered gathered() const override { return gathered_; }
 
   void give_up(const Error& error) override {
     if (has_failed_) return;
@@ -235,6 +239,7 @@ class MpiTeam final : public Team {
   std::atomic<bool> ends_{false}, has_failed_{false};
   std::function<bool()> is_last_{};
   Done told_;
+  Gathered gathered_;
 };
 
 }  // namespace

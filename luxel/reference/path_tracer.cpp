@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "luxel/base/check.h"
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/reference/paths.h"
 #include "luxel/reference/sums.h"
 #include "luxel/trace/camera_rays.h"
@@ -32,14 +32,14 @@ struct Batch {
 /// Goes through `count` receivers or pixels in tasks, and through their paths in batches of about
 /// kBatch: start(batch, paths) makes a batch's paths, sample by sample of each receiver; each(i,
 /// path) sees every path of receiver i at its end; finish(i, sums, n) takes what its n paths have
-/// summed to.
-template <class Start, class Each, class Finish>
+/// summed to, which sets `found`: all members of a team get all of that. Returns the number of rays.
+template <class Start, class Each, class Finish, class... Found>
 Result<uint64_t> run_tasks(const TracedScene& world, size_t count, const PathParams& params,
-                           Progress& progress, const Start& start, const Each& each,
-                           const Finish& finish) {
+                           Team* team, Progress& progress, const Start& start, const Each& each,
+                           const Finish& finish, std::span<Found>... found) {
   std::atomic<uint64_t> rays{0};
   const size_t samples = size_t(params.samples);
-  parallel_for(count, grain_for(count, params.samples), [&](size_t begin, size_t end) {
+  const auto task = [&](size_t begin, size_t end) {
     PathBuffers work;
     std::vector<Path> paths;
     std::vector<Sums> sums(end - begin);
@@ -59,9 +59,10 @@ Result<uint64_t> run_tasks(const TracedScene& world, size_t count, const PathPar
     }
     for (size_t i = begin; i < end; ++i) finish(i, sums[i - begin], double(samples));
     rays += traced;
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
-  return rays.load();
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, count, grain_for(count, params.samples), progress, task,
+                                found...));
+  return sum_of_members(team, rays.load(), progress);
 }
 
 uint64_t path_seed(uint64_t seed, size_t item, size_t sample) {
@@ -79,7 +80,7 @@ size_t point_of(const Receivers& receivers, size_t i, size_t sample) {
 
 Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receivers& receivers,
                                        const trace::RayTracer& tracer, const PathParams& params,
-                                       Progress& progress) {
+                                       Progress& progress, Team* team) {
   const size_t count = receivers.size();
   LUXEL_CHECK(params.samples >= 1);
   LUXEL_CHECK(!params.is_one_place ||
@@ -114,7 +115,11 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
     out.enclosed[i] = transport::is_enclosed(
         transport::BackFaces{int(n), int(out.met_back[i]), int(out.met_double_sided_back[i])});
   };
-  LUXEL_TRY(out.rays, run_tasks(world, count, params, progress, start, each, finish));
+  LUXEL_TRY(out.rays,
+            run_tasks(world, count, params, team, progress, start, each, finish,
+                      std::span(out.irradiance), std::span(out.standard_error),
+                      std::span(out.luminance_error), std::span(out.met_back),
+                      std::span(out.met_double_sided_back), std::span(out.enclosed)));
   double sum = 0;
   for (const Rgb& e : out.irradiance) sum += double(luminance(e));
   out.relative_error = relative_error(out.luminance_error, sum);
@@ -155,7 +160,7 @@ Result<Picture> radiance_by_paths(const scene::Scene& scene, const trace::RayTra
     out.radiance.at(x, y)[3] = float(double(covered[i]) / n);
     out.luminance_error[i] = float(standard_error(sums.l, sums.l2, n));
   };
-  LUXEL_TRY(out.rays, run_tasks(world, count, params, progress, start, each, finish));
+  LUXEL_TRY(out.rays, run_tasks(world, count, params, nullptr, progress, start, each, finish));
   double sum = 0;
   for (size_t i = 0; i < count; ++i)
     sum += double(luminance(out.radiance.rgb(int(i % size_t(width)), int(i / size_t(width)))));

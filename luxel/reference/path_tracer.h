@@ -11,6 +11,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/image/image.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
@@ -63,11 +64,12 @@ struct TexelPaths {
 
 /// E at every receiver. Unbiased, but for the rounding of floats. Paths are independent, so the
 /// standard error is that of a mean of independent values; it is itself an estimate, and needs some
-/// tens of paths to mean something. The same seed gives the same bits for any number of threads.
-/// Errors: cancelled.
+/// tens of paths to mean something. The same seed gives the same bits for any number of threads, and
+/// of members of a team, who share the receivers out. Errors: cancelled, another member of the team
+/// gives up.
 Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receivers& receivers,
                                        const trace::RayTracer& tracer, const PathParams& params,
-                                       Progress& progress);
+                                       Progress& progress, Team* team = nullptr);
 
 /// Radiance per pixel, 4 channels (A = share of the pixel's rays that show a surface).
 struct Picture {

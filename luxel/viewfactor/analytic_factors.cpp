@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/viewfactor/factor_matrix.h"
 #include "luxel/viewfactor/polygon_tree.h"
 #include "luxel/viewfactor/visible_form_factor.h"
@@ -70,10 +70,10 @@ bool is_wanted(const Room& room, uint32_t p, uint32_t q, const FactorSelection& 
 /// Adds the exchange of a batch of pairs to the matrix of exchange areas, in the order of the
 /// pairs, so that sums have the same bits for any number of threads. `rough` gets the pairs of
 /// surfaces whose work ended early.
-void add_batch(const Room& room, const std::vector<Pair>& batch, const AnalyticParams& params,
-               FactorMatrix& exchange, std::set<Pair>& rough, Progress& progress) {
+Status add_batch(const Room& room, const std::vector<Pair>& batch, const AnalyticParams& params,
+                 FactorMatrix& exchange, std::set<Pair>& rough, Team* team, Progress& progress) {
   std::vector<VisibleExchange> found(batch.size());
-  parallel_for(batch.size(), 4, [&](size_t begin, size_t end) {
+  const auto find = [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end && !progress.cancelled(); ++k) {
       const auto [p, q] = batch[k];
       VisibleParams visible{.tolerance = params.tolerance, .slack_m = room.slack};
@@ -83,7 +83,8 @@ void add_batch(const Room& room, const std::vector<Pair>& batch, const AnalyticP
       found[k] = exchange_of(room, p, q, visible);
       progress.advance(1);
     }
-  });
+  };
+  LUXEL_TRY_STATUS(share_ranges(team, batch.size(), 4, progress, find, std::span(found)));
   for (size_t k = 0; k < batch.size(); ++k) {
     const uint32_t i = room.surface[batch[k].first], j = room.surface[batch[k].second];
     if (found[k].gave_up) rough.insert(std::minmax(i, j));
@@ -93,6 +94,7 @@ void add_batch(const Room& room, const std::vector<Pair>& batch, const AnalyticP
       exchange.error[entry] += found[k].error;
     }
   }
+  return {};
 }
 
 void warn_of_rough_pairs(const std::set<Pair>& rough, const AnalyticParams& params,
@@ -116,7 +118,8 @@ void warn_of_rough_pairs(const std::set<Pair>& rough, const AnalyticParams& para
 }  // namespace
 
 Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticParams& params,
-                                      const FactorSelection& selection, Progress& progress) {
+                                      const FactorSelection& selection, Progress& progress,
+                                      Team* team) {
   constexpr size_t kBatch = 4096;
   const Room room = room_of(surfaces);
   const uint64_t count = room.polygons.size();
@@ -124,9 +127,10 @@ Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticPa
   FactorMatrix matrix = empty_factor_matrix(surfaces);
   std::vector<Pair> batch;
   std::set<Pair> rough;
-  const auto flush = [&] {
-    add_batch(room, batch, params, matrix, rough, progress);
+  const auto flush = [&]() -> Status {
+    LUXEL_TRY_STATUS(add_batch(room, batch, params, matrix, rough, team, progress));
     batch.clear();
+    return {};
   };
   for (uint32_t p = 0; p < count && !progress.cancelled(); ++p) {
     uint64_t nothing_to_do = 0;
@@ -136,11 +140,11 @@ Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticPa
         continue;
       }
       batch.push_back({p, q});
-      if (batch.size() == kBatch) flush();
+      if (batch.size() == kBatch) LUXEL_TRY_STATUS(flush());
     }
     progress.advance(nothing_to_do);
   }
-  flush();
+  LUXEL_TRY_STATUS(flush());
   LUXEL_TRY_STATUS(stopped(progress));
   // From exchange areas to factors; within one surface both directions fell on the same entry.
   for (size_t i = 0; i < matrix.size(); ++i)

@@ -6,6 +6,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/viewfactor/surfaces.h"
 
 namespace luxel::viewfactor {
@@ -54,6 +55,7 @@ struct AnalyticParams {
 /// and serves both directions. A pair of surfaces in which max_cells ended the work leaves a
 /// warning that names it and the error reached. Errors: cancelled.
 Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticParams& params,
-                                      const FactorSelection& selection, Progress& progress);
+                                      const FactorSelection& selection, Progress& progress,
+                                      Team* team = nullptr);
 
 }  // namespace luxel::viewfactor

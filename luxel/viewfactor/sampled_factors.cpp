@@ -6,6 +6,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/share_out.h"
 #include "luxel/base/warp.h"
 #include "luxel/viewfactor/surface_sampler.h"
 
@@ -163,7 +164,8 @@ void add_hemicube_factors(const Surfaces& surfaces, const trace::RayTracer& trac
 
 Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& surfaces,
                                      const trace::RayTracer& tracer, const SampledParams& params,
-                                     const FactorSelection& selection, Progress& progress) {
+                                     const FactorSelection& selection, Progress& progress,
+                                     Team* team) {
   LUXEL_CHECK(params.samples >= 1 && params.samples <= (1u << 24));
   const bool by_hemicube = params.hemicube > 0;
   Hemicube cube;
@@ -176,22 +178,36 @@ Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& 
   const size_t rays_per_sample = by_hemicube ? cube.direction.size() : 1;
   progress.begin("trace rays", uint64_t(rows) * params.samples * rays_per_sample);
   const float diagonal = scene::world_bounds(scene).diagonal();
-  for (uint32_t i = 0; i < width && !progress.cancelled(); ++i) {
-    if (selection.from != scene::kNone && selection.from != i) continue;
+  const auto factor_of = [&](size_t i) { return std::span(matrix.factor).subspan(i * width, width); };
+  const auto error_of = [&](size_t i) { return std::span(matrix.error).subspan(i * width, width); };
+  const auto look_from = [&](size_t piece) {
+    const uint32_t i = selection.from == scene::kNone ? uint32_t(piece) : selection.from;
     const Row row{surfaces,
                   tracer,
                   make_surface_sampler(scene, surfaces.surfaces[i].instance),
                   diagonal,
                   hash64(params.seed, i),
                   params.samples};
-    const std::span<double> factor{&matrix.factor[i * width], width};
-    const std::span<double> error{&matrix.error[i * width], width};
     if (by_hemicube)
-      row_by_hemicubes(row, cube, factor, error, progress);
+      row_by_hemicubes(row, cube, factor_of(i), error_of(i), progress);
     else
-      row_by_rays(row, factor, error, progress);
-  }
-  LUXEL_TRY_STATUS(stopped(progress));
+      row_by_rays(row, factor_of(i), error_of(i), progress);
+  };
+  // A single row is everybody's.
+  Team* const sharing = rows > 1 ? team : nullptr;
+  LUXEL_TRY(const std::vector<uint32_t> own,
+            share_out_in_turn(sharing, rows, progress, look_from));
+  LUXEL_TRY_STATUS(exchange(sharing, own,
+                            {rows,
+                             [&](size_t i, ByteWriter& out) {
+                               out.put(std::span<const double>(factor_of(i)));
+                               out.put(std::span<const double>(error_of(i)));
+                             },
+                             [&](size_t i, uint32_t, ByteReader& in) {
+                               in.get(factor_of(i)), in.get(error_of(i));
+                               return in.ok;
+                             }},
+                            progress));
   return matrix;
 }
 

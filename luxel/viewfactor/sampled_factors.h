@@ -29,10 +29,12 @@ double standard_error_of_share(double share, double count);
 /// pixel were a ray. One point has no spread to tell by: standard_error_of_share of one value.
 /// `scene` is what `surfaces` and `tracer` were made from; holes of its alpha masks are seen
 /// through, so give one without where surfaces count as solid. Besides the matrix the memory is
-/// sampled_factor_bytes. Errors: cancelled.
+/// sampled_factor_bytes. Members of a team share the rows out. Errors: cancelled, another member of
+/// the team gives up.
 Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& surfaces,
                                      const trace::RayTracer& tracer, const SampledParams& params,
-                                     const FactorSelection& selection, Progress& progress);
+                                     const FactorSelection& selection, Progress& progress,
+                                     Team* team = nullptr);
 
 /// What the sampling needs besides the matrix, for this number of surfaces.
 uint64_t sampled_factor_bytes(size_t surfaces, const SampledParams& params);

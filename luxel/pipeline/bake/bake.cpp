@@ -7,6 +7,7 @@
 #include "luxel/base/file_lock.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/pipeline/bake/bake_files.h"
 #include "luxel/pipeline/bake/bake_report.h"
 #include "luxel/pipeline/bake/bake_scene.h"
@@ -102,7 +103,8 @@ Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progre
   if (!cache.failure().empty()) result.warnings.push_back(cache.failure());
   LUXEL_TRY(FinishedFiles finished, finished_files(settings, result,
                                                    {{"checkpoint", checkpoint.about()},
-                                                    {"cache", cache.about(result.light)}},
+                                                    {"cache", cache.about(result.light)},
+                                                    {"team", about_team(team)}},
                                                    progress, progress));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_results(finished.files, checkpoint, cache, progress));
@@ -131,10 +133,9 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
   LUXEL_TRY_STATUS(check_team(team, settings, device != nullptr));
   const ThreadLimit threads(settings.threads);
   if (!settings.part.is_all()) return bake_part(settings, progress, device);
-  auto baked = !team || team->rank() == 0 ? bake_whole(settings, progress, device, team)
-                                          : help_to_bake(settings, progress, *team);
-  if (!baked && team) team->give_up(baked.error());
-  return baked;
+  return or_give_up(team, !team || team->rank() == 0
+                              ? bake_whole(settings, progress, device, team)
+                              : help_to_bake(settings, progress, *team));
 }
 
 Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,
@@ -143,7 +144,7 @@ Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
   LUXEL_TRY(FinishedFiles finished,
-            finished_files(settings, bake, {{"checkpoint", nullptr}, {"cache", nullptr}}, baked,
+            finished_files(settings, bake, {{"checkpoint", nullptr}, {"cache", nullptr}, {"team", nullptr}}, baked,
                            progress));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_files_atomically(finished.files));

@@ -11,6 +11,7 @@
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
+#include "luxel/base/share_out.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/bake_device.h"
 #include "luxel/pipeline/bake/bake_team.h"

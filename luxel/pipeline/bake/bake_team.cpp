@@ -55,6 +55,12 @@ Status check_same_settings(Team* team, const nlohmann::json& identity, Progress&
   return {};
 }
 
+nlohmann::json about_team(const Team* team) {
+  if (!team) return nullptr;
+  const Team::Gathered all = team->gathered();
+  return {{"processes", team->size()}, {"exchanges", all.times}, {"bytes", all.bytes}};
+}
+
 Status check_same_layout(Team* team, uint64_t digest, Progress& progress) {
   if (!team) return {};
   ByteWriter own;
@@ -67,11 +73,6 @@ Status check_same_layout(Team* team, uint64_t digest, Progress& progress) {
                   "or its node's processor is of another kind",
                   rank);
   return {};
-}
-
-Status leave_rest_to_first(const Team* team) {
-  if (!team || team->rank() == 0) return {};
-  return fail(ErrorCode::parts_missing, "the rest is the work of process 0");
 }
 
 }  // namespace luxel::pipeline

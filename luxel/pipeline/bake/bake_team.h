@@ -17,10 +17,11 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
 /// `identity` has (bake_identity()); another member gives up.
 Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress);
 
+/// For bake.json: how many members there are, how often they have given each other something, and
+/// how many bytes; null: there is no team.
+nlohmann::json about_team(const Team* team);
+
 /// Errors: members have laid the scene out differently (bad_input), another member gives up.
 Status check_same_layout(Team* team, uint64_t digest, Progress& progress);
-
-/// Errors (parts_missing): this is a team's member, and not its first.
-Status leave_rest_to_first(const Team* team);
 
 }  // namespace luxel::pipeline

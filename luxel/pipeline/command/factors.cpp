@@ -7,6 +7,7 @@
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/process_memory.h"
+#include "luxel/base/share_out.h"
 #include "luxel/import/import.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/viewfactor/sampled_factors.h"
@@ -134,14 +135,14 @@ Result<viewfactor::Surfaces> read_surfaces(const FactorSettings& s, scene::Scene
 Result<viewfactor::FactorMatrix> compute(const FactorSettings& s, const scene::Scene& scene,
                                          const viewfactor::Surfaces& surfaces,
                                          const viewfactor::FactorSelection& selection,
-                                         Progress& progress) {
+                                         Team* team, Progress& progress) {
   if (s.method == "analytic")
     return viewfactor::analytic_factors(surfaces, {.tolerance = s.tolerance.value_or(1e-4)},
-                                        selection, progress);
+                                        selection, progress, team);
   progress.begin("build ray tracer", 1);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   return viewfactor::sampled_factors(scene, surfaces, tracer, sampled_params(s), selection,
-                                     progress);
+                                     progress, team);
 }
 
 std::string quoted(const std::string& name) {
@@ -226,7 +227,9 @@ std::string factors_csv(const viewfactor::FactorMatrix& matrix,
   return csv;
 }
 
-Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress) {
+namespace {
+
+Result<FactorReport> make_report(const FactorSettings& settings, Team* team, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   // The surfaces, and those that are asked for.
   progress.begin("read scene", 1);
@@ -239,7 +242,8 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   // Their view factors, and how well they are known.
-  LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, progress));
+  LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, team, progress));
+  LUXEL_TRY_STATUS(leave_rest_to_first(team));
   report.warnings.insert(report.warnings.end(), report.matrix.warnings.begin(),
                          report.matrix.warnings.end());
   if (settings.smooth) {
@@ -254,6 +258,14 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
         write_file_atomically(settings.output, std::as_bytes(std::span(csv.data(), csv.size()))));
   }
   return report;
+}
+
+}  // namespace
+
+Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress, Team* team) {
+  auto done = make_report(settings, team, progress);
+  if (!done && done.error().code == ErrorCode::parts_missing) return FactorReport{};
+  return or_give_up(team, std::move(done));
 }
 
 }  // namespace luxel::pipeline

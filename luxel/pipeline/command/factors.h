@@ -9,6 +9,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/import/import.h"
 #include "luxel/viewfactor/factor_matrix.h"
 
@@ -45,8 +46,9 @@ struct FactorReport {
 
 /// Reads, computes, and writes the table. Errors: settings out of range, surfaces that do not
 /// exist, no surface with area, tables that do not fit into memory, an output that cannot be
-/// written.
-Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress);
+/// written. Members of a team share the work out; all but the first get an empty report.
+Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress,
+                                  Team* team = nullptr);
 
 /// The largest sum of tables that the work holds at once [bytes].
 uint64_t factor_table_bytes(size_t surfaces, const FactorSettings& settings);

@@ -9,6 +9,7 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
+#include "luxel/base/share_out.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/command/relight_error.h"
@@ -204,7 +205,7 @@ Status check(const RelightSettings& s) {
 }
 
 Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& s,
-                                     Progress& progress) {
+                                     Progress& progress, Team* team) {
   Relightable out;
   if (flatten_sky(scene))
     out.warnings.push_back(
@@ -223,7 +224,8 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
   params.max_error = float(s.max_error), params.bounces = s.bounces;
   CheckedTarget checked = with_places(std::move(wanted.target), places_to_check(scene, s.seed));
   LUXEL_TRY(out.data,
-            matrix::make_relight_data(scene, tracer, std::move(checked.target), params, progress));
+            matrix::make_relight_data(scene, tracer, std::move(checked.target), params, progress,
+                                      team));
   LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, out.data, progress));
   if (!std::isfinite(out.data.baked_error) || !std::isfinite(out.data.lamp_error))
     return tl::unexpected(scene::overflow_at(scene, scene::world_bounds(scene).centre()));
@@ -245,7 +247,10 @@ Result<nlohmann::json> write_relightable(const RelightSettings& s, const Relight
   return report(s, made.data, bytes.size(), made.warnings, progress);
 }
 
-Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
+namespace {
+
+Result<nlohmann::json> relight_alone_or_together(const RelightSettings& s, Team* team,
+                                                 Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   const ThreadLimit threads(s.threads);
   progress.begin("import", 0);
@@ -254,9 +259,17 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   // A scene without light is no mistake here: its lights come later.
   if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
     LUXEL_TRY_STATUS(add_outside_light(s.outside, imported.scene));
-  LUXEL_TRY(Relightable made, make_relightable(std::move(imported.scene), s, progress));
+  LUXEL_TRY(Relightable made, make_relightable(std::move(imported.scene), s, progress, team));
   made.warnings.insert(made.warnings.begin(), imported.warnings.begin(), imported.warnings.end());
   return write_relightable(s, made, progress);
+}
+
+}  // namespace
+
+Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress, Team* team) {
+  auto done = relight_alone_or_together(s, team, progress);
+  if (!done && done.error().code == ErrorCode::parts_missing) return nlohmann::json::object();
+  return or_give_up(team, std::move(done));
 }
 
 }  // namespace luxel::pipeline

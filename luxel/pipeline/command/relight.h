@@ -50,9 +50,10 @@ struct Relightable {
 
 /// Prepares a scene that is there, with its outside light; one without any stays dark. Of the
 /// settings, `scene` is a name for messages, and neither `reading` nor `outside` is looked at; see
-/// check(). Errors: whatever the stages say.
+/// check(). Members of a team share rays of form factors out; all but the first end with
+/// ErrorCode::parts_missing then. Errors: whatever the stages say.
 Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& settings,
-                                     Progress& progress);
+                                     Progress& progress, Team* team = nullptr);
 
 /// Writes settings.output, and ends the progress. Returns what `--json` prints: settings, counts,
 /// bytes, seconds. Errors: those of files; cancelled.
@@ -63,7 +64,9 @@ Result<nlohmann::json> write_relightable(const RelightSettings& settings, const 
 Status check(const RelightSettings& settings);
 
 /// Reads settings.scene, prepares it and writes settings.output. Returns what write_relightable()
-/// does. Errors: whatever the stages say; settings out of range.
-Result<nlohmann::json> relight(const RelightSettings& settings, Progress& progress);
+/// does, and at members of a team that are not its first {}. Errors: whatever the stages say;
+/// settings out of range.
+Result<nlohmann::json> relight(const RelightSettings& settings, Progress& progress,
+                               Team* team = nullptr);
 
 }  // namespace luxel::pipeline

@@ -69,6 +69,7 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
             memory_to_spare(in, settings, bytes_of_light(in, settings), pixels + kMinHitBytes));
   params.row_memory_bytes = memory - pixels;
   params.scratch_folder = nearest_folder(settings.output);
+  params.team = stores.team;
   const auto solve = [&](const BakeDevice* on) {
     LUXEL_CHECK(!on || on->look);
     params.device = on ? on->look : nullptr;
@@ -167,7 +168,7 @@ Status check_contradictions(const hemicube::HemicubeParams& params) {
 
 Solver hemicube_solver() {
   return {.name = "hemicube",
-          .can = {.direct_samples = true, .device = true, .vertex_light = true},
+          .can = {.direct_samples = true, .teams = true, .device = true, .vertex_light = true},
           .solve = solve_hemicube,
           .options = options_of_solver("hemicube", kHemicubeHeading, hemicube_options()),
           .notes = {{"--direct-samples", "four times as many per element"}},

@@ -37,7 +37,8 @@ Rgb patch_radiosity(const light::TexelScene& in, const matrix::PatchedScene& pat
 
 /// Direct light for each texel, indirect light for each patch.
 Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings& settings,
-                                const SolveStores&, const SolveObserver&, Progress& progress) {
+                                const SolveStores& stores, const SolveObserver&,
+                                Progress& progress) {
   matrix::MatrixParams params = settings.own.of<matrix::MatrixParams>();
   params.direct_samples = first_direct_samples(settings), params.bounces = settings.bounces;
   params.seed = params.patches.seed = params.factors.seed = settings.seed;
@@ -46,13 +47,14 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
       matrix::bytes_of_preparation(params.patches.count, params.factors.rays_per_patch);
   LUXEL_TRY_STATUS(memory_to_spare(in, settings, bytes_of_light(in, settings), needed));
   LUXEL_TRY(const matrix::Prepared prepared,
-            matrix::prepare(in.scene, in.tracer, params, progress));
+            matrix::prepare(in.scene, in.tracer, params, progress, stores.team));
   LUXEL_TRY(const matrix::Solution solution,
             matrix::solve(in.scene, in.lights, in.tracer, prepared, params, progress));
   LUXEL_TRY(const matrix::Transfer map,
             matrix::make_transfer(prepared.patched, in.tracer,
                                   {in.elements.position, in.elements.geometric_normal}, progress));
-  const light::DirectParams direct_params{first_direct_samples(settings), settings.seed};
+  light::DirectParams direct_params{first_direct_samples(settings), settings.seed};
+  direct_params.team = stores.team;
   LUXEL_TRY(light::DirectLight direct, light::direct_light(in.scene, in.elements, in.lights,
                                                            in.tracer, direct_params, progress));
   LUXEL_TRY(const light::Supersampled averaged,
@@ -102,7 +104,7 @@ Options<matrix::MatrixParams> matrix_options() {
 
 Solver matrix_solver() {
   return {.name = "matrix",
-          .can = {.direct_samples = true, .supersample = true, .noise = true},
+          .can = {.direct_samples = true, .supersample = true, .noise = true, .teams = true},
           .solve = solve_matrix,
           .options = options_of_solver("matrix", "Matrix radiosity", matrix_options())};
 }

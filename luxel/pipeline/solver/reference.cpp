@@ -34,7 +34,8 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
   const auto follow = [&](const BakeDevice* on) {
     LUXEL_CHECK(!on || on->paths);
     return on ? on->paths->irradiance(in.scene, in.tracer, receivers, params, progress)
-              : reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress);
+              : reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress,
+                                             stores.team);
   };
   TookPart part;
   LUXEL_TRY(reference::TexelPaths result, run_on_any(stores.device, follow, part));
@@ -56,6 +57,7 @@ Solver reference_solver() {
                   .supersample = true,
                   .noise = true,
                   .scatters = true,
+                  .teams = true,
                   .device = true},
           .solve = solve_reference,
           .notes = {{"--samples", "paths per texel"}}};

@@ -28,6 +28,7 @@ struct HemicubeParams {
   uint64_t row_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
   LookDevice* device = nullptr;  ///< what looks through hemicubes; null: the processor
+  Team* team = nullptr;  ///< whose members share hemicubes and their rows out; null: none
 };
 
 inline constexpr int kMaxResolution = 2048;
@@ -52,7 +53,8 @@ struct Solution {
 
 /// Cuts the scene's triangles, looks from each element, exchanges light until it settles, then cuts
 /// on where it varies, and lets all elements of the finished mesh look and exchange light anew.
-/// Errors: settings, cancelled, disk full; those of params.device.
+/// All members of a team get the whole solution, and none has an observer of views. Errors:
+/// settings, cancelled, disk full; those of params.device; another member of the team gives up.
 Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
                        const trace::RayTracer& tracer, const HemicubeParams& params,
                        Progress& progress, const Observer& observer = {});

@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "luxel/base/check.h"
-#include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/solve/hemicube/item_buffer.h"
 #include "luxel/solve/hemicube/look_device.h"
 #include "luxel/viewfactor/hemicube.h"
@@ -179,7 +179,9 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
   std::mutex mutex;
   Status status;
   LookSeconds sum;
-  parallel_for(from.size(), kTileElements, [&](size_t begin, size_t end) {
+  const auto look_from_group = [&](size_t group) {
+    const size_t begin = group * kTileElements;
+    const size_t end = std::min(begin + kTileElements, from.size());
     // One thread looks from neighbours, in order. The first failure stops all.
     Buffers buffers(senders.receivers.size());
     for (size_t i = begin; i < end; ++i) {
@@ -195,9 +197,11 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
     }
     const std::lock_guard lock(mutex);
     sum.visibility += buffers.seconds.visibility, sum.summation += buffers.seconds.summation;
-  });
-  if (!status) return tl::unexpected(status.error());
-  LUXEL_TRY_STATUS(stopped(progress));
+  };
+  const size_t groups = (from.size() + kTileElements - 1) / kTileElements;
+  const auto own = share_out(params.team, groups, progress, look_from_group);
+  LUXEL_TRY_STATUS(status);
+  if (!own) return tl::unexpected(own.error());
   return sum;
 }
 

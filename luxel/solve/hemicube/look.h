@@ -6,6 +6,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/light/surroundings.h"
 #include "luxel/solve/hemicube/receivers.h"
 #include "luxel/trace/ray_tracer.h"
@@ -64,6 +65,7 @@ class LookDevice;
 struct LookParams {
   int resolution = 64;           ///< pixels along an edge of the hemicube's top, even
   LookDevice* device = nullptr;  ///< what looks; null: the processor
+  Team* team = nullptr;          ///< whose members share groups out, without a device; null: none
 };
 
 struct Pixel {
@@ -81,7 +83,8 @@ using OnView = std::function<Status(size_t, const View&)>;
 inline constexpr size_t kTileElements = 16;
 
 /// Calls done(i, view) for every viewpoint, from many threads; the view is only valid during the
-/// call. The stage "hemicubes". Errors: cancelled, what done returns; those of params.device.
+/// call. With a team for those groups that are this member's. The stage "hemicubes". Errors:
+/// cancelled, what done returns; those of params.device; another member of the team gives up.
 Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
                          const LookParams& params, const OnView& done, Progress& progress);
 

@@ -174,14 +174,20 @@ Result<Sight> look_from(const SendingScene& around, const transport::Elements& e
       light::DirectLight direct,
       light::direct_light(
           around.scene, elements, around.emission.exact, around.tracer,
-          {.samples = params.direct_samples, .seed = params.seed, .same_points = true}, progress));
+          {.samples = params.direct_samples,
+           .seed = params.seed,
+           .same_points = true,
+           .team = params.team},
+          progress));
   const Senders senders{around.scene,
                         around.tracer,
                         around.mesh,
                         around.senders,
                         around.emission.exact.around,
                         around.emission.by_pixels};
-  RowParams of_rows{.look = {.resolution = params.resolution, .device = params.device},
+  RowParams of_rows{.look = {.resolution = params.resolution,
+                             .device = params.device,
+                             .team = params.team},
                     .memory_limit_bytes = params.row_memory_bytes,
                     .scratch_folder = params.scratch_folder};
   if (around.observer && around.observer->on_direct) around.observer->on_direct(direct.irradiance);

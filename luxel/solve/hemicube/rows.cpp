@@ -6,6 +6,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 
 namespace luxel::hemicube {
 namespace {
@@ -22,6 +23,29 @@ size_t max_row_entries(const Senders& senders, int resolution) {
   const size_t elements = senders.receivers.size();
   const size_t pixels = 3 * size_t(resolution) * size_t(resolution);
   return std::min(elements, 3 * pixels) + elements / kMaxStep + 1;
+}
+
+/// Gives all members of the team what each has set of `values`, one per row, for its own tiles.
+/// Errors: those of exchange().
+template <class... T>
+Status give_tiles(const Rows& rows, Progress& progress, std::span<T>... values) {
+  const auto for_each = [&](size_t tile, const auto& visit) {
+    const size_t begin = tile * kTileElements;
+    const size_t count = std::min(kTileElements, rows.scale.size() - begin);
+    (visit(std::as_writable_bytes(values.subspan(begin, count))), ...);
+  };
+  return luxel::exchange(rows.team, rows.own_tiles,
+                         {rows.store.tile_count(),
+                          [&](size_t tile, ByteWriter& out) {
+                            for_each(tile, [&](std::span<std::byte> part) {
+                              out.put(std::span<const std::byte>(part));
+                            });
+                          },
+                          [&](size_t tile, uint32_t, ByteReader& in) {
+                            for_each(tile, [&](std::span<std::byte> part) { in.get(part); });
+                            return in.ok;
+                          }},
+                         progress);
 }
 
 }  // namespace
@@ -54,10 +78,11 @@ Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
   LUXEL_TRY(auto store, RowStore<RowEntry>::create(
                             count, kTileElements, max_row_entries(senders, params.look.resolution),
                             params.memory_limit_bytes, params.scratch_folder));
-  Rows rows{std::move(store), {}, {}, {}, {}, {}, {}};
+  Rows rows{std::move(store), params.look.team, {}, {}, {}, {}, {}, {}, {}};
   rows.scale.resize(count), rows.emitted.resize(count);
   rows.hidden.resize(count), rows.enclosed.resize(count);
   std::vector<RowTile<RowEntry>> open(rows.store.tile_count());
+  std::vector<uint8_t> is_own(open.size());
   const auto keep = [&](size_t i, const View& view) -> Status {
     const size_t tile = i / kTileElements;
     rows.scale[i] = append_row(view, open[tile]);
@@ -65,9 +90,14 @@ Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
     rows.hidden[i] = is_hidden(view), rows.enclosed[i] = is_enclosed(view);
     if (params.on_view) params.on_view(i, view);
     if (i + 1 != count && (i + 1) % kTileElements != 0) return {};
+    is_own[tile] = 1;
     return rows.store.put(tile, std::move(open[tile]));
   };
   LUXEL_TRY(rows.seconds, look(senders, from, params.look, keep, progress));
+  for (uint32_t tile = 0; tile < is_own.size(); ++tile)
+    if (is_own[tile]) rows.own_tiles.push_back(tile);
+  LUXEL_TRY_STATUS(give_tiles(rows, progress, std::span(rows.emitted), std::span(rows.hidden),
+                              std::span(rows.enclosed)));
   return rows;
 }
 
@@ -80,10 +110,11 @@ Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb>
     b[i] = Float4{radiosity[i].x, radiosity[i].y, radiosity[i].z, 0};
   std::mutex mutex;
   Status status;
-  parallel_for(rows.store.tile_count(), 4, [&](size_t begin, size_t end) {
+  parallel_for(rows.own_tiles.size(), 4, [&](size_t begin, size_t end) {
     RowTile<RowEntry> buffer;
-    for (size_t t = begin; t < end; ++t) {
+    for (size_t own = begin; own < end; ++own) {
       if (progress.cancelled()) return;
+      const size_t t = rows.own_tiles[own];
       const auto tile = rows.store.get(t, buffer);
       if (!tile) {
         const std::lock_guard lock(mutex);
@@ -105,8 +136,9 @@ Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb>
       }
     }
   });
-  if (!status) return status;
-  return stopped(progress);
+  LUXEL_TRY_STATUS(status);
+  LUXEL_TRY_STATUS(stopped(progress));
+  return give_tiles(rows, progress, next);
 }
 
 }  // namespace luxel::hemicube

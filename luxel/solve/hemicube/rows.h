@@ -23,7 +23,10 @@ static_assert(sizeof(RowEntry) == 4);
 /// do not vanish.
 struct Rows {
   RowStore<RowEntry> store;
-  std::vector<float> scale;       ///< per row
+  /// Whose members have rows: each those of its tiles of kTileElements. Null: all are here.
+  Team* team = nullptr;
+  std::vector<uint32_t> own_tiles{};
+  std::vector<float> scale;       ///< per row that is here
   std::vector<Rgb> emitted;       ///< per row: irradiance from emission and background
   std::vector<uint8_t> hidden;    ///< per row: 1 inside a solid
   std::vector<uint8_t> enclosed;  ///< per row: 1 where is_enclosed
@@ -42,12 +45,13 @@ struct RowParams {
   std::function<void(size_t, const View&)> on_view{};
 };
 
-/// Looks from every viewpoint at all senders. Errors: cancelled, disk full.
+/// Looks from every viewpoint at all senders, of which the members of params.look.team have a part
+/// each. Errors: cancelled, disk full, another member of the team gives up.
 Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
                        const RowParams& params, Progress& progress);
 
 /// next_i = source_i + sum_j F_ij radiosity_j; radiosity is per sender, the others per row. Errors:
-/// cancelled; the file cannot be read.
+/// cancelled; the file cannot be read; another member of the team gives up.
 Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb> radiosity,
              std::span<Rgb> next, Progress& progress);
 

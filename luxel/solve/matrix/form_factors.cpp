@@ -7,6 +7,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/share_out.h"
 #include "luxel/base/warp.h"
 
 namespace luxel::matrix {
@@ -62,6 +63,20 @@ Row row_of(std::vector<uint32_t>& met, size_t rays) {
     k = end;
   }
   return row;
+}
+
+void put_row(const Row& row, float sky, ByteWriter& out) {
+  out.put_value(sky), out.put_value(uint32_t(row.column.size()));
+  out.put(std::span(row.column)), out.put(std::span(row.factor));
+}
+
+void get_row(ByteReader& in, Row& row, float& sky) {
+  sky = in.get_value<float>();
+  const uint32_t count = in.get_value<uint32_t>();
+  in.ok = in.ok && count <= in.bytes.size() / (sizeof(uint32_t) + sizeof(float));
+  if (!in.ok) return;
+  row.column.resize(count), row.factor.resize(count);
+  in.get(std::span(row.column)), in.get(std::span(row.factor));
 }
 
 FormFactors joined(std::vector<Row>& rows) {
@@ -206,7 +221,7 @@ double row_sum(const FormFactors& factors, size_t row) {
 
 Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const PatchedScene& patched, const FactorParams& params,
-                                    Progress& progress) {
+                                    Progress& progress, Team* team) {
   LUXEL_CHECK(params.rays_per_patch >= 1);
   const Patches& patches = patched.patches;
   const size_t rays = size_t(params.rays_per_patch);
@@ -216,7 +231,13 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
   out.sky.resize(patches.size());
   std::vector<Row> rows(patches.size());
   progress.begin("form factors", patches.size());
-  parallel_for(patches.size(), 16, [&](size_t begin, size_t end) {
+  constexpr size_t kPatchesPerPiece = 16;
+  const size_t pieces = (patches.size() + kPatchesPerPiece - 1) / kPatchesPerPiece;
+  const auto end_of = [&](size_t piece) {
+    return std::min((piece + 1) * kPatchesPerPiece, patches.size());
+  };
+  const auto look = [&](size_t piece) {
+    const size_t begin = piece * kPatchesPerPiece, end = end_of(piece);
     RayBuffers buffers(rays);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       // Rays from the points of the patch, and the patches that they meet.
@@ -237,8 +258,21 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
       out.sky[i] = float(escaped) / float(rays);
       progress.advance(1);
     }
-  });
-  LUXEL_TRY_STATUS(stopped(progress));
+  };
+  LUXEL_TRY(const std::vector<uint32_t> own, share_out(team, pieces, progress, look));
+  LUXEL_TRY_STATUS(exchange(
+      team, own,
+      {pieces,
+       [&](size_t piece, ByteWriter& bytes) {
+         for (size_t i = piece * kPatchesPerPiece; i < end_of(piece); ++i)
+           put_row(rows[i], out.sky[i], bytes);
+       },
+       [&](size_t piece, uint32_t, ByteReader& bytes) {
+         for (size_t i = piece * kPatchesPerPiece; i < end_of(piece); ++i)
+           get_row(bytes, rows[i], out.sky[i]);
+         return bytes.ok;
+       }},
+      progress));
   out.factors = joined(rows);
   out.rays = uint64_t(rays) * patches.size();
   return out;

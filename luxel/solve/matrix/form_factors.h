@@ -2,6 +2,7 @@
 #pragma once
 
 #include "luxel/base/progress.h"
+#include "luxel/base/team.h"
 #include "luxel/scene/scene.h"
 #include "luxel/solve/matrix/patches.h"
 
@@ -41,10 +42,11 @@ struct TracedFactors {
 
 /// F_ij = the share of rays from i that meet the patch j first. The standard error of a factor is
 /// at most sqrt(F / rays), and that of the light gathered over many patches far less. Backs of
-/// one-sided surfaces send nothing. Errors: cancelled.
+/// one-sided surfaces send nothing. Members of a team share the patches out. Errors: cancelled,
+/// another member of the team gives up.
 Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const PatchedScene& patched, const FactorParams& params,
-                                    Progress& progress);
+                                    Progress& progress, Team* team = nullptr);
 
 /// Makes A_i F_ij = A_j F_ji: both are estimates of the same exchange, so their mean has less
 /// noise. Then scales S_ij = A_i F_ij to d_i S_ij d_j so that each row has the sum that its rays

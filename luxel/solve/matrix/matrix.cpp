@@ -68,11 +68,11 @@ uint64_t bytes_of_preparation(size_t patches, int rays_per_patch) {
 }
 
 Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
-                         const MatrixParams& params, Progress& progress) {
+                         const MatrixParams& params, Progress& progress, Team* team) {
   Prepared out;
   LUXEL_TRY(out.patched, make_patches(scene, tracer, params.patches, progress));
   LUXEL_TRY(TracedFactors traced,
-            trace_factors(scene, tracer, out.patched, params.factors, progress));
+            trace_factors(scene, tracer, out.patched, params.factors, progress, team));
   out.factors = reciprocal(traced.factors, out.patched.patches.area_m2);
   out.sky = std::move(traced.sky);
   out.rays = traced.rays;

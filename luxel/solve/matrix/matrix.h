@@ -30,9 +30,10 @@ struct Prepared {
 /// What preparation holds at most, about.
 uint64_t bytes_of_preparation(size_t patches, int rays_per_patch);
 
-/// Patches and the exchange between them. Errors: no surface, cancelled.
+/// Patches and the exchange between them, whose rays the members of a team share out. Errors: no
+/// surface, cancelled, another member of the team gives up.
 Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
-                         const MatrixParams& params, Progress& progress);
+                         const MatrixParams& params, Progress& progress, Team* team = nullptr);
 
 /// The light of each patch [W/m^2].
 struct Solution {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "luxel/base/share_out.h"
 #include "luxel/solve/matrix/make_codec.h"
 #include "luxel/solve/matrix/trials.h"
 
@@ -37,15 +38,16 @@ Occluders occluders_of(const scene::Scene& scene) {
 
 Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::RayTracer& tracer,
                                       Target target, const RelightParams& params,
-                                      Progress& progress) {
+                                      Progress& progress, Team* team) {
   for (const scene::PunctualLight& light : scene.lights)
     if (light.profile != scene::kNone)
       return fail(ErrorCode::bad_setting,
                   "light '{}' has a light profile, which .lxr files do not keep; leave it out",
                   light.name);
-  LUXEL_TRY(
-      const Prepared prepared,
-      prepare(scene, tracer, {.patches = params.patches, .factors = params.factors}, progress));
+  LUXEL_TRY(const Prepared prepared,
+            prepare(scene, tracer, {.patches = params.patches, .factors = params.factors},
+                    progress, team));
+  LUXEL_TRY_STATUS(leave_rest_to_first(team));
   const Patches& patches = prepared.patched.patches;
   RelightData out;
   take_patches(patches, out);

@@ -34,10 +34,11 @@ struct RelightParams {
 };
 
 /// Everything but RelightData::scene_glb. `target` is where light is wanted, its transfer still
-/// empty. Errors: no surface, a light with a profile, cancelled, a codec that cannot hold so many
-/// patches.
+/// empty. Members of a team share the rays of form factors out; all but the first end with
+/// ErrorCode::parts_missing then, for the rest is the first one's. Errors: no surface, a light with
+/// a profile, cancelled, a codec that cannot hold so many patches, another member gives up.
 Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::RayTracer& tracer,
                                       Target target, const RelightParams& params,
-                                      Progress& progress);
+                                      Progress& progress, Team* team = nullptr);
 
 }  // namespace luxel::matrix

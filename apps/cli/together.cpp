@@ -1,0 +1,48 @@
+#include "apps/cli/together.h"
+
+#include <cstdio>
+
+#include "luxel/cluster/mpi.h"
+#include "luxel/pipeline/settings/version.h"
+
+namespace luxel::cli {
+namespace {
+
+/// "8 processes on 2 nodes: 2 work, the others lend their cores".
+std::string about_processes(const cluster::Joined& joined) {
+  const int working = joined.team ? int(joined.team->size()) : 1;
+  const std::string all = fmt::format("{} processes on {} node{}", joined.processes, joined.nodes,
+                                      joined.nodes == 1 ? "" : "s");
+  if (working == joined.processes) return all + " work together";
+  return fmt::format("{}: {} work{}, the others lend their cores (--processes-per-node)", all,
+                     working, working == 1 ? "s" : "");
+}
+
+}  // namespace
+
+void add_processes_per_node(CLI::App& command, int& processes_per_node) {
+  command
+      .add_option("--processes-per-node", processes_per_node,
+                  "Under mpirun or srun: how many processes of each node work, each with a scene "
+                  "of its own; the others lend them their cores")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+int run_together(const Common& common, int processes_per_node,
+                 const std::function<int(const Common&, Team*)>& run) {
+  if (cluster::processes_started() <= 1) return run(common, nullptr);
+  auto joined = cluster::join_processes(std::string("luxel ") + pipeline::kVersion,
+                                        processes_per_node);
+  if (!joined) return report(joined.error(), common);
+  const bool is_first = joined->works && (!joined->team || joined->team->rank() == 0);
+  if (is_first && !common.quiet) std::fprintf(stderr, "%s\n", about_processes(*joined).c_str());
+  Common own = common;
+  own.in_team = true;
+  if (!is_first) own.quiet = own.silent = true, own.json = false;
+  const int code = joined->works ? run(own, joined->team.get()) : kDone;
+  cluster::leave_processes(std::move(*joined), code != kDone);
+  return code;
+}
+
+}  // namespace luxel::cli

@@ -2,7 +2,6 @@
 #include "luxel/cluster/mpi_team.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -15,9 +14,15 @@
 namespace luxel::cluster {
 namespace {
 
-/// What lies at the first member: the counter, and what the others have told.
-enum Slot : int { kCounter, kUnits, kSkipped, kSlots };
-constexpr int64_t kNoMore = int64_t(1) << 60;
+/// What a member asks of the first one: numbers of the counter, which are answered, or none; and
+/// what it tells. A window with MPI_Fetch_and_op would do, but Open MPI has none over TCP as Debian
+/// sets it up.
+struct Request {
+  uint64_t count = 0;
+  Team::Done done{};
+};
+constexpr int kRequestTag = 1, kAnswerTag = 2;
+constexpr uint64_t kNoMore = uint64_t(1) << 60;
 /// What a header says of a member that has given up.
 constexpr int64_t kGivenUp = -1;
 /// So long others are waited for by a member that gives up [s]: what they work on ends soon then.
@@ -30,13 +35,8 @@ class MpiTeam final : public Team {
     int rank = 0, size = 1;
     MPI_Comm_rank(members_, &rank), MPI_Comm_size(members_, &size);
     rank_ = uint32_t(rank), size_ = uint32_t(size);
-    int64_t* slots = nullptr;
-    MPI_Win_allocate(rank == 0 ? kSlots * sizeof(int64_t) : 0, sizeof(int64_t), MPI_INFO_NULL,
-                     members_, &slots, &window_);
-    MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
-    if (rank != 0) return;
-    reset_slots();
-    server_ = std::thread([this] { serve(); });
+    MPI_Comm_dup(members_, &requests_);
+    if (rank == 0) server_ = std::thread([this] { serve(); });
   }
   MpiTeam(const MpiTeam&) = delete;
   MpiTeam& operator=(const MpiTeam&) = delete;
@@ -44,8 +44,7 @@ class MpiTeam final : public Team {
     ends_ = true;
     if (server_.joinable()) server_.join();
     if (has_failed_) return;  // the others are not there to end it together
-    MPI_Win_unlock_all(window_);
-    MPI_Win_free(&window_);
+    MPI_Comm_free(&requests_);
     MPI_Comm_free(&members_);
   }
 
@@ -54,29 +53,22 @@ class MpiTeam final : public Team {
 
   Status begin_stage(Progress& progress) override {
     if (rank_ == 0) {
-      const std::lock_guard lock(mutex_);
-      reset_slots();
+      const std::lock_guard lock(counter_mutex_);
+      counter_ = 0, told_ = {};
     }
     return all_gather({}, progress).map([](const auto&) {});
   }
 
   uint64_t next(uint64_t count) override {
-    const std::lock_guard lock(mutex_);
-    if (has_failed_) return uint64_t(kNoMore);
-    return uint64_t(add(kCounter, int64_t(count)));
+    if (has_failed_) return kNoMore;
+    return rank_ == 0 ? count_up({count, {}}) : ask_first({count, {}});
   }
-
   void tell(Done done) override {
-    const std::lock_guard lock(mutex_);
-    if (has_failed_) return;
-    add(kUnits, int64_t(done.units)), add(kSkipped, int64_t(done.skipped));
+    if (!has_failed_) send_to_first({0, done});
   }
   Done told() override {
-    const std::lock_guard lock(mutex_);
-    if (has_failed_) return {};
-    const Done now{uint64_t(add(kUnits, 0)), uint64_t(add(kSkipped, 0))};
-    const Done before = std::exchange(told_, now);
-    return {now.units - before.units, now.skipped - before.skipped};
+    const std::lock_guard lock(counter_mutex_);
+    return std::exchange(told_, {});
   }
 
   Result<std::vector<std::vector<std::byte>>> all_gather(std::span<const std::byte> own,
@@ -91,10 +83,12 @@ class MpiTeam final : public Team {
 
   void give_up(const Error& error) override {
     if (has_failed_) return;
-    {
-      const std::lock_guard lock(mutex_);
-      add(kCounter, kNoMore);
+    if (error.code == ErrorCode::cancelled) {
+      has_failed_ = true;  // the others are stopped, too, or will be when this process has ended
+      return;
     }
+    // Nobody begins another piece.
+    next(kNoMore);
     Progress last;
     const Clock::time_point start = Clock::now();
     is_last_ = [start] { return seconds_since(start) > kLastWait; };
@@ -107,33 +101,54 @@ class MpiTeam final : public Team {
   }
 
  private:
-  /// Adds to a slot of the first member. Returns what was there before.
-  int64_t add(Slot slot, int64_t value) {
-    int64_t before = 0;
-    MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, slot, value == 0 ? MPI_NO_OP : MPI_SUM,
-                     window_);
-    MPI_Win_flush(0, window_);
+  /// At the first member. Returns what the counter was.
+  uint64_t count_up(const Request& request) {
+    const std::lock_guard lock(counter_mutex_);
+    told_.units += request.done.units, told_.skipped += request.done.skipped;
+    const uint64_t before = counter_;
+    counter_ = std::min(counter_ + request.count, 2 * kNoMore);
     return before;
   }
-  void reset_slots() {
-    const std::array<int64_t, kSlots> none{};
-    MPI_Accumulate(none.data(), kSlots, MPI_INT64_T, 0, 0, kSlots, MPI_INT64_T, MPI_REPLACE,
-                   window_);
-    MPI_Win_flush(0, window_);
-    told_ = {};
+
+  void send_to_first(const Request& request) {
+    const std::lock_guard lock(mutex_);
+    MPI_Send(&request, int(sizeof request), MPI_BYTE, 0, kRequestTag, requests_);
+  }
+  /// One thread of a member asks at a time.
+  uint64_t ask_first(const Request& request) {
+    const std::lock_guard one(asking_);
+    send_to_first(request);
+    uint64_t answer = kNoMore;
+    MPI_Request waiting = MPI_REQUEST_NULL;
+    {
+      const std::lock_guard lock(mutex_);
+      MPI_Irecv(&answer, int(sizeof answer), MPI_BYTE, 0, kAnswerTag, requests_, &waiting);
+    }
+    Progress nobody;
+    return wait(waiting, true, nobody) ? answer : kNoMore;
   }
 
-  /// Answers the others while this member works on something else: some networks need MPI to be
-  /// called at both ends.
+  /// Answers the others while this member works on something else.
   void serve() {
-    while (!ends_) {
-      {
-        const std::lock_guard lock(mutex_);
-        int there = 0;
-        MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, members_, &there, MPI_STATUS_IGNORE);
-      }
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    while (!ends_ && !has_failed_) {
+      if (!serve_one()) std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
+    while (!has_failed_ && serve_one()) {}
+  }
+  /// False: nobody has asked or told anything.
+  bool serve_one() {
+    const std::lock_guard lock(mutex_);
+    int is_there = 0;
+    MPI_Status from;
+    MPI_Iprobe(MPI_ANY_SOURCE, kRequestTag, requests_, &is_there, &from);
+    if (!is_there) return false;
+    Request request;
+    MPI_Recv(&request, int(sizeof request), MPI_BYTE, from.MPI_SOURCE, kRequestTag, requests_,
+             MPI_STATUS_IGNORE);
+    const uint64_t answer = count_up(request);
+    if (request.count > 0)
+      MPI_Send(&answer, int(sizeof answer), MPI_BYTE, from.MPI_SOURCE, kAnswerTag, requests_);
+    return true;
   }
 
   /// Waits for a request. `is_moving`: all members are there, and bytes only move while MPI is
@@ -233,12 +248,14 @@ class MpiTeam final : public Team {
   MPI_Comm members_;
   const std::string node_;
   uint32_t rank_ = 0, size_ = 1;
-  MPI_Win window_ = MPI_WIN_NULL;
-  std::mutex mutex_;
+  MPI_Comm requests_ = MPI_COMM_NULL;  ///< so that they meet nothing else
+  std::mutex mutex_, asking_;
+  std::mutex counter_mutex_;  ///< of the two below, at the first member
+  uint64_t counter_ = 0;
+  Done told_;
   std::thread server_;
   std::atomic<bool> ends_{false}, has_failed_{false};
   std::function<bool()> is_last_{};
-  Done told_;
   Gathered gathered_;
 };
 

@@ -111,9 +111,9 @@ TEST_F(BakesOfATeamSlow, HaveTheBitsOfOneProcessForAnyNumber) {
 // Other solvers and commands: paths, hemicubes, patches, view factors.
 TEST_F(BakesOfATeam, HaveTheBitsOfOneProcessByOtherSolvers) {
   const std::string office = scene_file("office.glb") + " --resolution 48 --solver ";
-  for (const std::string more : {office + "reference --samples 16",
-                                 office + "hemicube --max-elements 1500 --hemicube 16",
-                                 office + "matrix --patches 500 --rays 256"})
+  for (const std::string more :
+       {office + "reference --samples 16", office + "hemicube --max-elements 1500 --hemicube 16",
+        office + "matrix --patches 500 --rays 256"})
     EXPECT_EQ(done_together(2, more), alone(more)) << more;
 }
 
@@ -156,9 +156,11 @@ TEST_F(BakesOfATeam, AreRefusedWithOneSentence) {
   EXPECT_THAT(error(together(2, scene_file("cornell-box.glb") + " --solver hierarchical")),
               HasSubstr("--solver hierarchical works in one process"));
   const std::string per_node = " --processes-per-node 2";
-  EXPECT_THAT(error(shell(mpirun(1) + " " LUXEL_BINARY " " + bake(box) + per_node + " : -n 1 " +
-                          LUXEL_BINARY " " + bake(box) + " --bounces 2" + per_node)),
-              HasSubstr("process 1 was not given the settings of process 0: bounces 2 there"));
+  EXPECT_THAT(
+      error(shell(mpirun(1) + " " LUXEL_BINARY " " + bake(box) + per_node + " : -n 1 " +
+                  LUXEL_BINARY " " + bake(box) + " --bounces 2" + per_node)),
+      HasSubstr(
+          "process 1 (there) was not given the settings of process 0 (here): bounces 2 there"));
   // A file that one node lacks.
   fs::create_directory(scratch_.path / "there"), fs::create_directory(scratch_.path / "not");
   fs::copy_file(scene_file("cornell-box.glb"), scratch_.path / "there" / "box.glb");
@@ -167,8 +169,9 @@ TEST_F(BakesOfATeam, AreRefusedWithOneSentence) {
                        (scratch_.path / folder).string(), folder_.string(), per_node);
   };
   const std::string command = mpirun(1);
-  EXPECT_THAT(error(shell(command.substr(0, command.rfind("-n")) + in("there") + " : " + in("not"))),
-              HasSubstr("process 1 of 2 ("));
+  EXPECT_THAT(
+      error(shell(command.substr(0, command.rfind("-n")) + in("there") + " : " + in("not"))),
+      HasSubstr("process 1 of 2 ("));
 }
 
 /// Bakes that are killed, process by process, until one comes through.
@@ -211,7 +214,8 @@ TEST_F(KilledBakes, LoseNothingThatIsFinished) {
   for (const auto& [processes, rank, after_s] : {std::tuple{3, 2, 1.6}, {2, 0, 1.9}, {3, 1, 2.2}})
     kills += kill_one(processes, rank, after_s);
   ASSERT_GT(kills, 0);
-  if (!fs::exists(folder_)) GTEST_SKIP() << "this machine is too slow, or too fast, for the moments";
+  if (!fs::exists(folder_))
+    GTEST_SKIP() << "this machine is too slow, or too fast, for the moments";
   const size_t kept = parts_kept();
   const nlohmann::json checkpoint = ended_by_one();
   EXPECT_EQ(checkpoint["parts_found"], kept);

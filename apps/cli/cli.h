@@ -27,8 +27,9 @@ struct Common {
   int threads = 0;
   bool quiet = false;
   bool json = false;
-  bool silent = false;   ///< no errors, either: another process has them
-  bool in_team = false;  ///< started by mpirun, which kills it when another process ends
+  bool silent = false;            ///< no errors, either: another process says them
+  std::string* unsaid = nullptr;  ///< gets those that are not said
+  bool in_team = false;           ///< started by mpirun, which kills it when another process ends
 };
 void add_common(CLI::App& command, Common& common);
 

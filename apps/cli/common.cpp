@@ -112,14 +112,14 @@ class ProgressLine {
   }
 
  private:
-  /// As soon as there is a way on: when another process ends, mpirun passes nothing on any more, and
-  /// kills this one.
+  /// As soon as there is a way on: when another process ends, mpirun passes nothing on any more,
+  /// and kills this one.
   void say_way_on(const Progress& progress) {
     const std::string way_on = says_way_on_ ? progress.way_on() : std::string();
     if (way_on.empty()) return;
     says_way_on_ = false;
-    std::fprintf(stderr, "%sfinished parts are kept from now on: %s\n",
-                 terminal_ ? "\r\033[K" : "", way_on.c_str());
+    std::fprintf(stderr, "%sfinished parts are kept from now on: %s\n", terminal_ ? "\r\033[K" : "",
+                 way_on.c_str());
   }
   void print_notes(const Progress& progress) {
     for (const std::string& note : progress.notes(notes_)) {
@@ -239,8 +239,11 @@ std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {
 
 int report(std::string_view code, int exit_code, const std::string& whole_message,
            const Common& common) {
-  if (common.silent) return exit_code;
   const std::string message = short_message(whole_message);
+  if (common.silent) {
+    if (common.unsaid) *common.unsaid = message;
+    return exit_code;
+  }
   std::fprintf(stderr, "luxel: %s\n", message.c_str());
   if (!common.json) return exit_code;
   const nlohmann::json json{

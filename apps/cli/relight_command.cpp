@@ -55,7 +55,8 @@ int run_making(const RelightOptions& options, Team* team) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error(), options.common);
   return run_and_print(
-      options.common, [&](Progress& progress) { return pipeline::relight(*settings, progress, team); },
+      options.common,
+      [&](Progress& progress) { return pipeline::relight(*settings, progress, team); },
       [&](const nlohmann::json& json) { print_summary(*settings, json); });
 }
 

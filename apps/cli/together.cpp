@@ -1,6 +1,8 @@
 #include "apps/cli/together.h"
 
+#include <chrono>
 #include <cstdio>
+#include <thread>
 
 #include "luxel/cluster/mpi.h"
 #include "luxel/pipeline/settings/version.h"
@@ -18,6 +20,14 @@ std::string about_processes(const cluster::Joined& joined) {
                      working, working == 1 ? "s" : "");
 }
 
+/// The first process says what went wrong, and mpirun ends the others then. Where it does not in
+/// time, since it is at work on something else, this one does.
+void say_when_nobody_does(const cluster::Joined& joined, const std::string& unsaid) {
+  std::this_thread::sleep_for(std::chrono::seconds(5));
+  std::fprintf(stderr, "luxel: process %u of %d: %s\n", joined.team ? joined.team->rank() : 0,
+               joined.processes, unsaid.c_str());
+}
+
 }  // namespace
 
 void add_processes_per_node(CLI::App& command, int& processes_per_node) {
@@ -32,15 +42,19 @@ void add_processes_per_node(CLI::App& command, int& processes_per_node) {
 int run_together(const Common& common, int processes_per_node,
                  const std::function<int(const Common&, Team*)>& run) {
   if (cluster::processes_started() <= 1) return run(common, nullptr);
-  auto joined = cluster::join_processes(std::string("luxel ") + pipeline::kVersion,
-                                        processes_per_node);
+  auto joined =
+      cluster::join_processes(std::string("luxel ") + pipeline::kVersion, processes_per_node);
   if (!joined) return report(joined.error(), common);
   const bool is_first = joined->works && (!joined->team || joined->team->rank() == 0);
   if (is_first && !common.quiet) std::fprintf(stderr, "%s\n", about_processes(*joined).c_str());
   Common own = common;
   own.in_team = true;
-  if (!is_first) own.quiet = own.silent = true, own.json = false;
+  std::string unsaid;
+  if (!is_first) own.quiet = own.silent = true, own.json = false, own.unsaid = &unsaid;
   const int code = joined->works ? run(own, joined->team.get()) : kDone;
+  // What went wrong before the work began, or after it; else the others know.
+  if (code != kDone && joined->team) joined->team->give_up({ErrorCode::io, unsaid});
+  if (!is_first && code != kDone) say_when_nobody_does(*joined, unsaid);
   cluster::leave_processes(std::move(*joined), code != kDone);
   return code;
 }

@@ -12,8 +12,8 @@ namespace luxel::cli {
 void add_processes_per_node(CLI::App& command, int& processes_per_node);
 
 /// Calls run(common, team): `team` is null where a process was started alone, or works alone. Of
-/// several that were started together, those that only lend their cores do not call it, and only the
-/// first one's `common` lets it print. Returns the exit code.
+/// several that were started together, those that only lend their cores do not call it, and only
+/// the first one's `common` lets it print. Returns the exit code.
 int run_together(const Common& common, int processes_per_node,
                  const std::function<int(const Common& common, Team* team)>& run);
 

@@ -27,6 +27,12 @@ struct KeptEntries {
   uint64_t offset = 0;
 };
 
+/// Which tiles stay in memory where not all fit.
+enum class TilesInMemory : uint8_t {
+  first_numbers,
+  first_come  ///< for processes that have some of the tiles each, and do not know which
+};
+
 /// Keeps tiles in memory up to a limit and the rest in a temporary file, or where they are kept
 /// anyway.
 template <class Entry>
@@ -36,20 +42,26 @@ class RowStore {
  public:
   /// Tiles hold `tile_elements` rows each, the last one maybe fewer. `max_entries_per_element` and
   /// `memory_limit_bytes` decide beforehand which tiles go to the file, so that the choice does not
-  /// depend on threads. Errors: no file can be made in `scratch_folder`.
+  /// depend on threads; with TilesInMemory::first_come those that come when memory is full. Errors:
+  /// no file can be made in `scratch_folder`.
   static Result<RowStore> create(size_t element_count, size_t tile_elements,
                                  size_t max_entries_per_element, uint64_t memory_limit_bytes,
-                                 const std::filesystem::path& scratch_folder) {
+                                 const std::filesystem::path& scratch_folder,
+                                 TilesInMemory in_memory = TilesInMemory::first_numbers) {
     RowStore store;
     const size_t tiles = (element_count + tile_elements - 1) / tile_elements;
     store.slot_bytes_ = uint64_t(tile_elements) * max_entries_per_element * sizeof(Entry);
-    store.tiles_in_memory_ =
+    const size_t fit =
         store.slot_bytes_ == 0
             ? tiles
             : size_t(std::min<uint64_t>(tiles, memory_limit_bytes / store.slot_bytes_));
     store.tiles_.resize(tiles);
-    store.kept_.resize(tiles - store.tiles_in_memory_);
-    if (store.tiles_in_memory_ < tiles) {
+    if (fit < tiles) {
+      store.kept_.resize(tiles), store.is_in_file_.resize(tiles);
+      if (in_memory == TilesInMemory::first_come)
+        store.bytes_->still_fit.emplace(int64_t(fit));
+      else
+        std::fill(store.is_in_file_.begin() + std::ptrdiff_t(fit), store.is_in_file_.end(), 1);
       auto file = ScratchFile::create(scratch_folder);
       if (!file) return tl::unexpected(file.error());
       store.file_ = std::move(*file);
@@ -63,26 +75,27 @@ class RowStore {
   Status put(size_t tile, RowTile<Entry> rows, const KeptEntries& kept = {}) {
     LUXEL_CHECK(tile < tile_count());
     const size_t bytes = rows.entries.size() * sizeof(Entry);
-    if (tile >= tiles_in_memory_) {
+    if (file_ && bytes_->still_fit && (*bytes_->still_fit)-- <= 0) is_in_file_[tile] = 1;
+    if (is_in_file(tile)) {
       LUXEL_CHECK(bytes <= slot_bytes_);
-      kept_[tile - tiles_in_memory_] = kept;
+      kept_[tile] = kept;
       if (kept.store == nullptr)
         LUXEL_TRY_STATUS(file_->write(offset(tile), rows.entries.data(), bytes));
       rows.entries = {};
     }
     rows.entries.shrink_to_fit();
     tiles_[tile] = std::move(rows);
-    (tile < tiles_in_memory_ ? bytes_->in_memory : bytes_->in_file) += bytes;
+    (is_in_file(tile) ? bytes_->in_file : bytes_->in_memory) += bytes;
     return {};
   }
 
   /// The tile itself, or, when it lies in the file, a copy read into `buffer`. Thread-safe.
   Result<const RowTile<Entry>*> get(size_t tile, RowTile<Entry>& buffer) const {
     LUXEL_CHECK(tile < tile_count());
-    if (tile < tiles_in_memory_) return &tiles_[tile];
+    if (!is_in_file(tile)) return &tiles_[tile];
     buffer.end = tiles_[tile].end;
     buffer.entries.resize(buffer.end.empty() ? 0 : buffer.end.back());
-    const KeptEntries& kept = kept_[tile - tiles_in_memory_];
+    const KeptEntries& kept = kept_[tile];
     const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer.entries));
     if (kept.store == nullptr)
       LUXEL_TRY_STATUS(file_->read(offset(tile), bytes.data(), bytes.size()));
@@ -98,14 +111,17 @@ class RowStore {
  private:
   struct Bytes {
     std::atomic<uint64_t> in_memory{0}, in_file{0};
+    std::optional<std::atomic<int64_t>> still_fit{};  ///< first_come: so many tiles more
   };
 
+  bool is_in_file(size_t tile) const { return !is_in_file_.empty() && is_in_file_[tile] != 0; }
   /// A slot for the most that a tile can hold. Holes take no space.
-  uint64_t offset(size_t tile) const { return (tile - tiles_in_memory_) * slot_bytes_; }
+  uint64_t offset(size_t tile) const { return tile * slot_bytes_; }
 
   std::vector<RowTile<Entry>> tiles_;  ///< without entries where those lie in the file
-  std::vector<KeptEntries> kept_;      ///< per tile that is not in memory
-  size_t tiles_in_memory_ = 0;
+  // Per tile, where some do not fit into memory: where its entries are kept, and whether in a file.
+  std::vector<KeptEntries> kept_;
+  std::vector<uint8_t> is_in_file_;
   uint64_t slot_bytes_ = 0;
   std::optional<ScratchFile> file_;
   std::unique_ptr<Bytes> bytes_ = std::make_unique<Bytes>();

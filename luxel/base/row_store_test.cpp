@@ -32,9 +32,13 @@ TEST(RowStore, GivesBackWhatItGotFromMemoryAndFile) {
   constexpr size_t kElements = 803;  // the last tile has three rows
   const uint64_t slot = kTile * kMostEntries * sizeof(Entry);
   uint64_t bytes = 0;
-  for (const uint64_t limit : {UINT64_MAX, uint64_t(0), 10 * slot, 10 * slot - 1}) {
+  const std::pair<uint64_t, TilesInMemory> kinds[] = {
+      {UINT64_MAX, TilesInMemory::first_numbers}, {0, TilesInMemory::first_numbers},
+      {10 * slot, TilesInMemory::first_numbers},  {10 * slot - 1, TilesInMemory::first_numbers},
+      {UINT64_MAX, TilesInMemory::first_come},    {10 * slot, TilesInMemory::first_come}};
+  for (const auto& [limit, in_memory] : kinds) {
     auto store = RowStore<Entry>::create(kElements, kTile, kMostEntries, limit,
-                                         std::filesystem::temp_directory_path());
+                                         std::filesystem::temp_directory_path(), in_memory);
     ASSERT_TRUE(store) << store.error().message;
     ASSERT_EQ(store->tile_count(), 101u);
     const auto rows_of = [&](size_t t) { return t == 100 ? 3 : kTile; };
@@ -54,6 +58,19 @@ TEST(RowStore, GivesBackWhatItGotFromMemoryAndFile) {
     EXPECT_LE(store->bytes_in_memory(), limit);
     EXPECT_EQ(store->bytes_in_file() == 0, limit == UINT64_MAX);
   }
+}
+
+// A process that has only tiles of large numbers still has them in memory.
+TEST(RowStore, KeepsInMemoryWhatComesFirst) {
+  const uint64_t slot = kTile * kMostEntries * sizeof(Entry);
+  auto store =
+      RowStore<Entry>::create(803, kTile, kMostEntries, 10 * slot,
+                              std::filesystem::temp_directory_path(), TilesInMemory::first_come);
+  ASSERT_TRUE(store);
+  for (size_t t = 90; t < 100; ++t) ASSERT_TRUE(store->put(t, tile_of(t, kTile)));
+  EXPECT_EQ(store->bytes_in_file(), 0u);
+  ASSERT_TRUE(store->put(3, tile_of(3, kTile)));
+  EXPECT_GT(store->bytes_in_file(), 0u);
 }
 
 TEST(RowStore, OfNothingNeedsNoFile) {

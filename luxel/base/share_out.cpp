@@ -21,8 +21,7 @@ class PieceQueue {
   PieceQueue(Team& team, size_t count)
       : team_(team),
         count_(count),
-        at_a_time_(std::clamp<uint64_t>(count / (team.size() * kTimesEach), 1,
-                                        kMostAtATime)) {}
+        at_a_time_(std::clamp<uint64_t>(count / (team.size() * kTimesEach), 1, kMostAtATime)) {}
 
   /// None: all pieces are taken.
   std::optional<size_t> next() {
@@ -145,14 +144,21 @@ Result<std::vector<uint32_t>> share_out(Team* team, size_t count, Progress& prog
 Result<std::vector<uint32_t>> share_out_in_turn(Team* team, size_t count, Progress& progress,
                                                 const std::function<void(size_t)>& work) {
   std::vector<uint32_t> own;
-  if (team) LUXEL_TRY_STATUS(team->begin_stage(progress));
+  std::optional<DoneOfTeam> done;
+  if (team) {
+    done.emplace(*team, progress);
+    LUXEL_TRY_STATUS(team->begin_stage(progress));
+  }
   for (size_t piece = 0;; ++piece) {
     if (team) piece = size_t(std::min<uint64_t>(team->next(1), count));
     LUXEL_TRY_STATUS(stopped(progress));
-    if (piece >= count) return own;
+    if (piece >= count) break;
     own.push_back(uint32_t(piece));
     work(piece);
+    if (done) done->pass_on();
   }
+  if (done) done->pass_on_rest();
+  return own;
 }
 
 Status do_own(Team* team, std::span<const uint32_t> own, Progress& progress,

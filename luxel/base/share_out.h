@@ -18,8 +18,9 @@ inline namespace base {
 /// Calls work(piece) for pieces 0 .. count - 1, each at one member of the team, on several threads
 /// of each. Members take pieces as they are ready for more, so that slower ones do less. Returns
 /// those of this member, ascending; when the work is cancelled, some are done by nobody. Units of
-/// `progress` are those of the whole stage, whose first member sees what all do. Without a team all
-/// pieces are this process's. Errors: cancelled, another member gives up.
+/// `progress` are those of the whole stage, whose first member sees what all do. With a team,
+/// something that all wait for must follow before the next stage: exchange(), mostly. Without one
+/// all pieces are this process's. Errors: cancelled, another member gives up.
 Result<std::vector<uint32_t>> share_out(Team* team, size_t count, Progress& progress,
                                         const std::function<void(size_t piece)>& work);
 
@@ -44,8 +45,8 @@ struct PieceExchange {
 Status exchange(Team* team, std::span<const uint32_t> own, const PieceExchange& pieces,
                 Progress& progress);
 
-/// Calls work(begin, end) on ranges that cover [0, count), each `grain` long but the last one, at one
-/// member of the team each. It sets `values` there, which have one entry each per number: all
+/// Calls work(begin, end) on ranges that cover [0, count), each `grain` long but the last one, at
+/// one member of the team each. It sets `values` there, which have one entry each per number: all
 /// members get all of them. Errors: those of exchange().
 template <class... T>
 Status share_ranges(Team* team, size_t count, size_t grain, Progress& progress,

@@ -88,8 +88,8 @@ TEST(ShareRanges, AreKnownToAllMembers) {
     const auto set = [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) value[i] = uint32_t(3 * i), low[i] = uint8_t(i);
     };
-    ASSERT_TRUE(share_ranges(&team, value.size(), 1000, progress, set, std::span(value),
-                             std::span(low)));
+    ASSERT_TRUE(
+        share_ranges(&team, value.size(), 1000, progress, set, std::span(value), std::span(low)));
     for (size_t i = 0; i < value.size(); ++i)
       ASSERT_TRUE(value[i] == uint32_t(3 * i) && low[i] == uint8_t(i)) << i;
     const auto squares = share_lists<int>(&team, 10, 3, progress, [](size_t begin, size_t end) {

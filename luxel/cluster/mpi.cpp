@@ -12,8 +12,6 @@
 #include <chrono>
 #include <thread>
 
-#include <algorithm>
-
 #include "luxel/cluster/mpi_team.h"
 #endif
 
@@ -53,13 +51,19 @@ class BlockedSignals {
 };
 
 Status start_mpi() {
-  const BlockedSignals blocked;
   int provided = 0;
   // Every call is under one mutex: not all ways that MPI knows to another node take more.
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     return fail(ErrorCode::unsupported, "MPI cannot be started");
   if (provided < MPI_THREAD_SERIALIZED)
     return fail(ErrorCode::unsupported, "this MPI knows no threads; luxel needs them");
+  int size = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  if (size != processes_started())
+    return fail(ErrorCode::unsupported,
+                "{} processes were started together, and MPI knows of {}: luxel was built with "
+                "another MPI ({}) than that which has started it",
+                processes_started(), size, mpi_version());
   return {};
 }
 
@@ -135,6 +139,7 @@ Status check_program(const std::string& program) {
 }  // namespace
 
 Result<Joined> join_processes(const std::string& program, int per_node) {
+  const BlockedSignals blocked;
   LUXEL_TRY_STATUS(start_mpi());
   LUXEL_TRY_STATUS(check_program(program));
   const Node node = own_node(per_node);
@@ -155,13 +160,13 @@ Result<Joined> join_processes(const std::string& program, int per_node) {
 
 void leave_processes(Joined joined, bool failed) {
   if (failed) return;
+  joined.team.reset();
   MPI_Request all = MPI_REQUEST_NULL;
   MPI_Ibarrier(MPI_COMM_WORLD, &all);
   for (int done = 0; !done;) {
     MPI_Test(&all, &done, MPI_STATUS_IGNORE);
     if (!done) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  joined.team.reset();
   MPI_Finalize();
 }
 

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <climits>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include "luxel/base/bytes.h"
+#include "luxel/base/check.h"
 #include "luxel/base/clock.h"
 
 namespace luxel::cluster {
@@ -18,14 +20,16 @@ namespace {
 /// what it tells. A window with MPI_Fetch_and_op would do, but Open MPI has none over TCP as Debian
 /// sets it up.
 struct Request {
+  uint64_t stage = 0;  ///< how many have begun: what comes late is of no stage any more
   uint64_t count = 0;
   Team::Done done{};
+  bool wants_answer = false;
 };
 constexpr int kRequestTag = 1, kAnswerTag = 2;
 constexpr uint64_t kNoMore = uint64_t(1) << 60;
 /// What a header says of a member that has given up.
 constexpr int64_t kGivenUp = -1;
-/// So long others are waited for by a member that gives up [s]: what they work on ends soon then.
+/// So long others are waited for by a member that gives up [s].
 constexpr double kLastWait = 3;
 
 /// MPI is called by one thread at a time, under `mutex_`.
@@ -44,6 +48,11 @@ class MpiTeam final : public Team {
     ends_ = true;
     if (server_.joinable()) server_.join();
     if (has_failed_) return;  // the others are not there to end it together
+    // Others may work for long still: no core is used until they are here.
+    Progress nobody;
+    MPI_Request all = MPI_REQUEST_NULL;
+    MPI_Ibarrier(members_, &all);
+    std::ignore = wait(all, false, nobody);
     MPI_Comm_free(&requests_);
     MPI_Comm_free(&members_);
   }
@@ -56,15 +65,17 @@ class MpiTeam final : public Team {
       const std::lock_guard lock(counter_mutex_);
       counter_ = 0, told_ = {};
     }
+    ++stage_;
     return all_gather({}, progress).map([](const auto&) {});
   }
 
   uint64_t next(uint64_t count) override {
     if (has_failed_) return kNoMore;
-    return rank_ == 0 ? count_up({count, {}}) : ask_first({count, {}});
+    const Request request{.stage = stage_, .count = count, .wants_answer = true};
+    return rank_ == 0 ? count_up(request) : ask_first(request);
   }
   void tell(Done done) override {
-    if (!has_failed_) send_to_first({0, done});
+    if (!has_failed_) send_to_first({.stage = stage_, .done = done});
   }
   Done told() override {
     const std::lock_guard lock(counter_mutex_);
@@ -88,10 +99,11 @@ class MpiTeam final : public Team {
       return;
     }
     // Nobody begins another piece.
-    next(kNoMore);
-    Progress last;
     const Clock::time_point start = Clock::now();
     is_last_ = [start] { return seconds_since(start) > kLastWait; };
+    const Request no_more{.stage = stage_, .count = kNoMore};
+    rank_ == 0 ? void(count_up(no_more)) : send_to_first(no_more);
+    Progress last;
     if (headers(kGivenUp, last)) {
       const std::string text = fmt::format("{:c}process {} of {} ({}): {}", char(int(error.code)),
                                            rank_, size_, node_, error.message);
@@ -104,7 +116,8 @@ class MpiTeam final : public Team {
   /// At the first member. Returns what the counter was.
   uint64_t count_up(const Request& request) {
     const std::lock_guard lock(counter_mutex_);
-    told_.units += request.done.units, told_.skipped += request.done.skipped;
+    if (request.stage == stage_)
+      told_.units += request.done.units, told_.skipped += request.done.skipped;
     const uint64_t before = counter_;
     counter_ = std::min(counter_ + request.count, 2 * kNoMore);
     return before;
@@ -133,11 +146,13 @@ class MpiTeam final : public Team {
     while (!ends_ && !has_failed_) {
       if (!serve_one()) std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
-    while (!has_failed_ && serve_one()) {}
+    while (serve_one()) {
+    }
   }
   /// False: nobody has asked or told anything.
   bool serve_one() {
     const std::lock_guard lock(mutex_);
+    if (has_failed_) return false;  // buffers of open requests may be gone
     int is_there = 0;
     MPI_Status from;
     MPI_Iprobe(MPI_ANY_SOURCE, kRequestTag, requests_, &is_there, &from);
@@ -146,7 +161,7 @@ class MpiTeam final : public Team {
     MPI_Recv(&request, int(sizeof request), MPI_BYTE, from.MPI_SOURCE, kRequestTag, requests_,
              MPI_STATUS_IGNORE);
     const uint64_t answer = count_up(request);
-    if (request.count > 0)
+    if (request.wants_answer)
       MPI_Send(&answer, int(sizeof answer), MPI_BYTE, from.MPI_SOURCE, kAnswerTag, requests_);
     return true;
   }
@@ -163,6 +178,7 @@ class MpiTeam final : public Team {
         if (done) return {};
       }
       if (progress.cancelled() || (is_last_ && is_last_())) {
+        const std::lock_guard lock(mutex_);
         has_failed_ = true;  // the request stays open
         return fail(ErrorCode::cancelled, "cancelled");
       }
@@ -230,6 +246,7 @@ class MpiTeam final : public Team {
     }
     std::vector<std::vector<std::byte>> out(size_);
     if (sum == 0) return out;
+    LUXEL_CHECK(sum <= size_t(INT_MAX));  // MPI counts in int; 5e8 texels send less at a time
     std::vector<std::byte> all(sum);
     MPI_Request request = MPI_REQUEST_NULL;
     {
@@ -254,6 +271,7 @@ class MpiTeam final : public Team {
   uint64_t counter_ = 0;
   Done told_;
   std::thread server_;
+  std::atomic<uint64_t> stage_{0};
   std::atomic<bool> ends_{false}, has_failed_{false};
   std::function<bool()> is_last_{};
   Gathered gathered_;

@@ -269,8 +269,7 @@ Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
   Team* team = averaging.params.direct.team;
   const size_t parts = (averaging.which.size() + kSupersampleGrain - 1) / kSupersampleGrain;
   std::vector<uint64_t> rays(parts);
-  LUXEL_TRY(const std::vector<uint32_t> own,
-            share_out(team, parts, progress, [&](size_t number) {
+  LUXEL_TRY(const std::vector<uint32_t> own, share_out(team, parts, progress, [&](size_t number) {
               const AveragedPart part = averaging.part(number);
               if (const auto found = find_part(kept, number, part, direct)) {
                 rays[number] = *found;
@@ -281,16 +280,16 @@ Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
               keep_part(kept, number, part, direct, rays[number]);
               progress.advance(part.which.size());
             }));
-  const PieceExchange parts_of_team{
-      parts,
-      [&](size_t number, ByteWriter& out) {
-        put_part(averaging.part(number), direct, rays[number], out);
-      },
-      [&](size_t number, uint32_t, ByteReader& bytes) {
-        const auto got = get_part(bytes, averaging.part(number), direct);
-        rays[number] = got.value_or(0);
-        return got.has_value();
-      }};
+  const PieceExchange parts_of_team{parts,
+                                    [&](size_t number, ByteWriter& out) {
+                                      put_part(averaging.part(number), direct, rays[number], out);
+                                    },
+                                    [&](size_t number, uint32_t, ByteReader& bytes) {
+                                      const auto got =
+                                          get_part(bytes, averaging.part(number), direct);
+                                      rays[number] = got.value_or(0);
+                                      return got.has_value();
+                                    }};
   LUXEL_TRY_STATUS(exchange(team, own, parts_of_team, progress));
   return std::accumulate(rays.begin(), rays.end(), uint64_t(0));
 }

@@ -66,8 +66,7 @@ void keep_sum(const Neighbourhood& n, const NoiseLevel& noise, const Balance& be
 
 /// The fireflies of a part; of direct light those that are none on a closer look left out.
 Result<std::vector<Firefly>> fireflies_of(const Neighbourhood& n, const NoiseLevel& noise,
-                                          const NoisyLight& part, Team* team,
-                                          Progress& progress) {
+                                          const NoisyLight& part, Team* team, Progress& progress) {
   if (part.is_direct && !part.look_again) return std::vector<Firefly>{};
   LUXEL_TRY(std::vector<Firefly> found,
             find_fireflies(n, {part.values, part.variance, noise, part.is_direct}, team, progress));

@@ -33,11 +33,12 @@ struct GrowRound {
   float max_deviations2 = 0;  ///< largest squared difference over its variance that counts
 };
 struct Planes {
-  /// Per texel. Members of a team know slopes of their own texels alone, which nobody else asks for.
+  /// Per texel. Members of a team know slopes of their own texels alone, which nobody else asks
+  /// for.
   std::vector<Plane> planes;
   std::vector<Shown> shown;  ///< what the others see of each: a buffer
-  /// The squares of the atlas (texel_tile.h) whose texels are this member's, or all; none before the
-  /// first round.
+  /// The squares of the atlas (texel_tile.h) whose texels are this member's, or all; none before
+  /// the first round.
   std::optional<std::vector<uint32_t>> own_squares{};
 };
 

@@ -111,8 +111,8 @@ Result<NoiseLevel> noise_level(const Neighbourhood& n, std::span<const Rgb> valu
       if (n.place[i].spacing > 0)
         difference[i] = mixed_difference(n, uint32_t(i), values, variance);
   };
-  LUXEL_TRY_STATUS(share_ranges(team, values.size(), kBlockTexels, progress, differ,
-                                std::span(difference)));
+  LUXEL_TRY_STATUS(
+      share_ranges(team, values.size(), kBlockTexels, progress, differ, std::span(difference)));
   NoiseLevel level;
   level.variance.assign(values.size(), 0.0f);
   level.per_channel.assign(values.size(), {1, 1, 1});

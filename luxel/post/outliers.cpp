@@ -83,8 +83,8 @@ Result<std::vector<Firefly>> find_fireflies(const Neighbourhood& n, const Outlie
     for (uint32_t i = uint32_t(begin); i < end; ++i)
       if (is_noisy(n, part.variance, i)) lowered_to[i] = lowered(n, part, i);
   };
-  LUXEL_TRY_STATUS(share_ranges(team, part.values.size(), kBlockTexels, progress, look,
-                                std::span(lowered_to)));
+  LUXEL_TRY_STATUS(
+      share_ranges(team, part.values.size(), kBlockTexels, progress, look, std::span(lowered_to)));
   std::vector<Firefly> found;
   for (uint32_t i = 0; i < lowered_to.size(); ++i)
     if (lowered_to[i] < INFINITY) found.push_back({i, lowered_to[i]});

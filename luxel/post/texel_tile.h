@@ -85,17 +85,17 @@ void for_texels_of_square(const Neighbourhood& n, size_t number, const Visit& vi
 template <class T>
 Status give_squares(Team* team, std::span<const uint32_t> own, const Neighbourhood& n,
                     Progress& progress, std::span<T> values) {
-  return exchange(
-      team, own,
-      {tile_count(n),
-       [&](size_t number, ByteWriter& out) {
-         for_texels_of_square(n, number, [&](uint32_t i) { out.put_value(values[i]); });
-       },
-       [&](size_t number, uint32_t, ByteReader& in) {
-         for_texels_of_square(n, number, [&](uint32_t i) { values[i] = in.get_value<T>(); });
-         return in.ok;
-       }},
-      progress);
+  return exchange(team, own,
+                  {tile_count(n),
+                   [&](size_t number, ByteWriter& out) {
+                     for_texels_of_square(n, number, [&](uint32_t i) { out.put_value(values[i]); });
+                   },
+                   [&](size_t number, uint32_t, ByteReader& in) {
+                     for_texels_of_square(n, number,
+                                          [&](uint32_t i) { values[i] = in.get_value<T>(); });
+                     return in.ok;
+                   }},
+                  progress);
 }
 
 /// Calls visit(texel, cell) for all texels of the tile's square.

@@ -32,7 +32,8 @@ struct Batch {
 /// Goes through `count` receivers or pixels in tasks, and through their paths in batches of about
 /// kBatch: start(batch, paths) makes a batch's paths, sample by sample of each receiver; each(i,
 /// path) sees every path of receiver i at its end; finish(i, sums, n) takes what its n paths have
-/// summed to, which sets `found`: all members of a team get all of that. Returns the number of rays.
+/// summed to, which sets `found`: all members of a team get all of that. Returns the number of
+/// rays.
 template <class Start, class Each, class Finish, class... Found>
 Result<uint64_t> run_tasks(const TracedScene& world, size_t count, const PathParams& params,
                            Team* team, Progress& progress, const Start& start, const Each& each,
@@ -60,8 +61,8 @@ Result<uint64_t> run_tasks(const TracedScene& world, size_t count, const PathPar
     for (size_t i = begin; i < end; ++i) finish(i, sums[i - begin], double(samples));
     rays += traced;
   };
-  LUXEL_TRY_STATUS(share_ranges(team, count, grain_for(count, params.samples), progress, task,
-                                found...));
+  LUXEL_TRY_STATUS(
+      share_ranges(team, count, grain_for(count, params.samples), progress, task, found...));
   return sum_of_members(team, rays.load(), progress);
 }
 
@@ -115,11 +116,10 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
     out.enclosed[i] = transport::is_enclosed(
         transport::BackFaces{int(n), int(out.met_back[i]), int(out.met_double_sided_back[i])});
   };
-  LUXEL_TRY(out.rays,
-            run_tasks(world, count, params, team, progress, start, each, finish,
-                      std::span(out.irradiance), std::span(out.standard_error),
-                      std::span(out.luminance_error), std::span(out.met_back),
-                      std::span(out.met_double_sided_back), std::span(out.enclosed)));
+  LUXEL_TRY(out.rays, run_tasks(world, count, params, team, progress, start, each, finish,
+                                std::span(out.irradiance), std::span(out.standard_error),
+                                std::span(out.luminance_error), std::span(out.met_back),
+                                std::span(out.met_double_sided_back), std::span(out.enclosed)));
   double sum = 0;
   for (const Rgb& e : out.irradiance) sum += double(luminance(e));
   out.relative_error = relative_error(out.luminance_error, sum);

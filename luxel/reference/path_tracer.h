@@ -64,9 +64,9 @@ struct TexelPaths {
 
 /// E at every receiver. Unbiased, but for the rounding of floats. Paths are independent, so the
 /// standard error is that of a mean of independent values; it is itself an estimate, and needs some
-/// tens of paths to mean something. The same seed gives the same bits for any number of threads, and
-/// of members of a team, who share the receivers out. Errors: cancelled, another member of the team
-/// gives up.
+/// tens of paths to mean something. The same seed gives the same bits for any number of threads,
+/// and of members of a team, who share the receivers out. Errors: cancelled, another member of the
+/// team gives up.
 Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receivers& receivers,
                                        const trace::RayTracer& tracer, const PathParams& params,
                                        Progress& progress, Team* team = nullptr);

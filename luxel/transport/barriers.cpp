@@ -257,9 +257,11 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
   return Plane{normal, dot(normal, to_double(scene::world_position(scene, lowest.point())))};
 }
 
-Result<std::vector<atlas::PartedPoints>> find_parted(
-    const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::TexelMap& map,
-    const trace::RayTracer& tracer, Progress& progress, Team* team) {
+Result<std::vector<atlas::PartedPoints>> find_parted(const scene::Scene& scene,
+                                                     const atlas::Atlas& atlas,
+                                                     const atlas::TexelMap& map,
+                                                     const trace::RayTracer& tracer,
+                                                     Progress& progress, Team* team) {
   constexpr size_t kBlock = 256;
   progress.begin("walls", 2 * map.texels.size());
   std::vector<Openness> openness(map.texels.size());

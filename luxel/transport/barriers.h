@@ -43,9 +43,11 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
 /// right beside the first. A look-up mixes both, or one with a hidden texel between them that
 /// has the light of the other. In the order of the texels. The members of a team share the texels
 /// out. The stage "walls". Errors: cancelled, another member of the team gives up.
-Result<std::vector<atlas::PartedPoints>> find_parted(
-    const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::TexelMap& map,
-    const trace::RayTracer& tracer, Progress& progress, Team* team = nullptr);
+Result<std::vector<atlas::PartedPoints>> find_parted(const scene::Scene& scene,
+                                                     const atlas::Atlas& atlas,
+                                                     const atlas::TexelMap& map,
+                                                     const trace::RayTracer& tracer,
+                                                     Progress& progress, Team* team = nullptr);
 
 /// A place of a chart.
 struct ChartPoint {

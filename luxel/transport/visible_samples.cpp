@@ -254,8 +254,8 @@ Status look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::spa
       if (const uint32_t i = on_lattice(int(k) % across, int(k) / across); i != atlas::kNone)
         enclosed[k] = !probe.in_the_open(map.texels[i].sample);
   };
-  LUXEL_TRY_STATUS(share_ranges(team, enclosed.size(), 64, progress, look_at_lattice,
-                                std::span(enclosed)));
+  LUXEL_TRY_STATUS(
+      share_ranges(team, enclosed.size(), 64, progress, look_at_lattice, std::span(enclosed)));
   const auto is_enclosed_at = [&](int u, int v) {
     return u >= 0 && v >= 0 && u < across && v < across &&
            enclosed[size_t(v) * size_t(across) + size_t(u)];
@@ -347,8 +347,8 @@ Result<MovedSamples> move_some(const Probe& probe, std::span<const uint32_t> tex
       }
     }
   };
-  LUXEL_TRY_STATUS(share_ranges(team, edge.size(), 64, progress, move, std::span(moved),
-                                std::span(is_moved)));
+  LUXEL_TRY_STATUS(
+      share_ranges(team, edge.size(), 64, progress, move, std::span(moved), std::span(is_moved)));
   for (size_t k = 0; k < edge.size(); ++k)
     if (is_moved[k]) map.texels[edge[k]] = moved[k], out.moved.push_back(edge[k]);
   return out;
@@ -395,8 +395,7 @@ Result<MovedSamples> move_samples_out_of_solids(const scene::Scene& scene,
                    progress);
 }
 
-Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene,
-                                               const atlas::Atlas& atlas,
+Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
                                                const trace::RayTracer& tracer,
                                                std::span<const Box3> boxes,
                                                std::span<const uint32_t> near_back_faces,

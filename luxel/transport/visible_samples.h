@@ -39,8 +39,7 @@ Result<MovedSamples> move_samples_out_of_solids(const scene::Scene& scene,
 /// samples all are where they were before they were moved: of texels away from the boxes only
 /// those that had backs near them then are looked at. Returns what move_samples_out_of_solids()
 /// does.
-Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene,
-                                               const atlas::Atlas& atlas,
+Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
                                                const trace::RayTracer& tracer,
                                                std::span<const Box3> boxes,
                                                std::span<const uint32_t> near_back_faces,

@@ -144,8 +144,8 @@ Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticPa
     }
     progress.advance(nothing_to_do);
   }
-  LUXEL_TRY_STATUS(flush());
   LUXEL_TRY_STATUS(stopped(progress));
+  LUXEL_TRY_STATUS(flush());
   // From exchange areas to factors; within one surface both directions fell on the same entry.
   for (size_t i = 0; i < matrix.size(); ++i)
     for (size_t j = 0; j < matrix.size(); ++j) {

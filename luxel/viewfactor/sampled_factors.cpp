@@ -178,7 +178,9 @@ Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& 
   const size_t rays_per_sample = by_hemicube ? cube.direction.size() : 1;
   progress.begin("trace rays", uint64_t(rows) * params.samples * rays_per_sample);
   const float diagonal = scene::world_bounds(scene).diagonal();
-  const auto factor_of = [&](size_t i) { return std::span(matrix.factor).subspan(i * width, width); };
+  const auto factor_of = [&](size_t i) {
+    return std::span(matrix.factor).subspan(i * width, width);
+  };
   const auto error_of = [&](size_t i) { return std::span(matrix.error).subspan(i * width, width); };
   const auto look_from = [&](size_t piece) {
     const uint32_t i = selection.from == scene::kNone ? uint32_t(piece) : selection.from;
@@ -195,8 +197,7 @@ Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& 
   };
   // A single row is everybody's.
   Team* const sharing = rows > 1 ? team : nullptr;
-  LUXEL_TRY(const std::vector<uint32_t> own,
-            share_out_in_turn(sharing, rows, progress, look_from));
+  LUXEL_TRY(const std::vector<uint32_t> own, share_out_in_turn(sharing, rows, progress, look_from));
   LUXEL_TRY_STATUS(exchange(sharing, own,
                             {rows,
                              [&](size_t i, ByteWriter& out) {

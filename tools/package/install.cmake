@@ -33,7 +33,7 @@ install(FILES ${draco_archive} DESTINATION ${luxel_archives})
 # that are not installed (the devices', the window's and the tests'), and of Embree, which only trace
 # includes.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/luxel/*.h)
-list(FILTER headers EXCLUDE REGEX "(^luxel/(validate|cluster|gpu|view|trace/embree|trace/vulkan|light/device|solve/device|reference/device)/|/test_|_test[_.]|/node_modules/)")
+list(FILTER headers EXCLUDE REGEX "(^luxel/(validate|cluster|gpu|view|trace/embree|trace/vulkan|light/device|solve/device|reference/device)/|/test_|_test[_.]|/thread_team|/node_modules/)")
 foreach(header ${headers})
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})

@@ -93,7 +93,7 @@ Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progre
                                   const BakeDevice* device, Team* team) {
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
-  // Others wait for the folder there.
+  // The other members begin when they have this: the folder is there.
   LUXEL_TRY_STATUS(check_same_settings(team, identity_of(settings), progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), team);
   BakeCache cache(settings, settings_of_kept_bake(settings));
@@ -133,9 +133,8 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress,
   LUXEL_TRY_STATUS(check_team(team, settings, device != nullptr));
   const ThreadLimit threads(settings.threads);
   if (!settings.part.is_all()) return bake_part(settings, progress, device);
-  return or_give_up(team, !team || team->rank() == 0
-                              ? bake_whole(settings, progress, device, team)
-                              : help_to_bake(settings, progress, *team));
+  return or_give_up(team, !team || team->rank() == 0 ? bake_whole(settings, progress, device, team)
+                                                     : help_to_bake(settings, progress, *team));
 }
 
 Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,
@@ -144,7 +143,8 @@ Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
   LUXEL_TRY(FinishedFiles finished,
-            finished_files(settings, bake, {{"checkpoint", nullptr}, {"cache", nullptr}, {"team", nullptr}}, baked,
+            finished_files(settings, bake,
+                           {{"checkpoint", nullptr}, {"cache", nullptr}, {"team", nullptr}}, baked,
                            progress));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_files_atomically(finished.files));

@@ -21,6 +21,7 @@
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
+#include "luxel/pipeline/reuse/same_work.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -181,7 +182,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   PartStore* parts = keepers.checkpoint ? keepers.checkpoint->parts() : nullptr;
   const uint64_t layout = parts || keepers.team ? digest_of(bake.map, ready.elements) : 0;
   if (parts) parts->set_context(layout);
-  LUXEL_TRY_STATUS(check_same_layout(keepers.team, layout, progress));
+  LUXEL_TRY_STATUS(check_same_work(keepers.team, bake.scene, layout, progress));
   const SolveStores stores{parts, keepers.cache, keepers.device, keepers.team};
   SolveObserver observer;
   if (watcher.on_estimate)
@@ -196,8 +197,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
     LUXEL_TRY(regions, connected_texels(input, bake.light.hidden, progress, keepers.team));
   }
   if (settings.denoise)
-    LUXEL_TRY_STATUS(
-        denoise_light(input, settings, regions, bake.light, progress, keepers.team));
+    LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress, keepers.team));
   LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
@@ -225,7 +225,9 @@ tl::unexpected<Error> out_of_time(const BakeSettings& settings, const Progress& 
 /// bake_loaded(), but no longer than --time-budget where the solver does not look at the clock.
 Status bake_in_time(const BakeSettings& settings, const Keepers& keepers,
                     const BakeObserver& watcher, Bake& bake, Progress& progress) {
-  if (settings.time_budget_s <= 0 || find_solver(settings.solver)->can.errors)
+  const bool looks_at_clock = find_solver(settings.solver)->can.errors;
+  const bool is_helper = keepers.team && keepers.team->rank() > 0;  // the first one ends all
+  if (settings.time_budget_s <= 0 || looks_at_clock || is_helper)
     return bake_loaded(settings, keepers, watcher, bake, progress);
   const Deadline deadline(progress, seconds_left(settings.time_budget_s, progress.stages()));
   const Status done = bake_loaded(settings, keepers, watcher, bake, progress);

@@ -83,10 +83,10 @@ Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::s
                                 Progress& progress);
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in or above settings.output, and the checkpoint and the cache, if there are any. The members
-/// of keepers.team share the work out; all but the first end with ErrorCode::parts_missing then, for
-/// the rest is the first one's. Errors: whatever the stages say; settings out of range; settings
-/// that a device does not know.
+/// name in or above settings.output, and the checkpoint and the cache, if there are any. The
+/// members of keepers.team share the work out; all but the first end with ErrorCode::parts_missing
+/// then, for the rest is the first one's. Errors: whatever the stages say; settings out of range;
+/// settings that a device does not know.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
                         const Keepers& keepers = {}, const BakeObserver& observer = {});
 

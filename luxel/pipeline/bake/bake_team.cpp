@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "luxel/base/bytes.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/solver/solvers.h"
 
@@ -23,12 +22,12 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
   if (!team) return {};
   const auto refuse = [&](const std::string& option) {
     return fail(ErrorCode::bad_setting,
-                "{} is for one process, and {} were started together; leave it or mpirun out",
-                option, team->size());
+                "{} is for one process, and {} work together; leave it or mpirun out", option,
+                team->size());
   };
   if (!find_solver(settings.solver)->can.teams)
     return fail(ErrorCode::bad_setting,
-                "--solver {} works in one process, and {} were started together; leave mpirun out, "
+                "--solver {} works in one process, and {} work together; leave mpirun out, "
                 "or choose one that shares its work: {}",
                 settings.solver, team->size(), solvers_with_teams());
   if (!settings.part.is_all())
@@ -40,7 +39,8 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
 
 Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress) {
   if (!team) return {};
-  const std::string own = identity.dump();
+  // Names of things may be no UTF-8, which JSON knows nothing else of.
+  const std::string own = identity.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   LUXEL_TRY(const auto all, team->all_gather(std::as_bytes(std::span(own)), progress));
   const auto read = [&](size_t rank) {
     const auto* text = reinterpret_cast<const char*>(all[rank].data());
@@ -49,8 +49,8 @@ Status check_same_settings(Team* team, const nlohmann::json& identity, Progress&
   for (size_t rank = 1; rank < all.size(); ++rank)
     if (all[rank] != all[0])
       return fail(ErrorCode::bad_setting,
-                  "process {} was not given the settings of process 0: {}; start all with the same "
-                  "command",
+                  "process {} (there) was not given the settings of process 0 (here): {}; start "
+                  "all with the same command",
                   rank, difference(read(rank), read(0)));
   return {};
 }
@@ -59,20 +59,6 @@ nlohmann::json about_team(const Team* team) {
   if (!team) return nullptr;
   const Team::Gathered all = team->gathered();
   return {{"processes", team->size()}, {"exchanges", all.times}, {"bytes", all.bytes}};
-}
-
-Status check_same_layout(Team* team, uint64_t digest, Progress& progress) {
-  if (!team) return {};
-  ByteWriter own;
-  own.put_value(digest);
-  LUXEL_TRY(const auto all, team->all_gather(own.bytes, progress));
-  for (size_t rank = 1; rank < all.size(); ++rank)
-    if (all[rank] != all[0])
-      return fail(ErrorCode::bad_input,
-                  "process {} has laid the scene out differently than process 0: its files differ, "
-                  "or its node's processor is of another kind",
-                  rank);
-  return {};
 }
 
 }  // namespace luxel::pipeline

@@ -21,7 +21,4 @@ Status check_same_settings(Team* team, const nlohmann::json& identity, Progress&
 /// how many bytes; null: there is no team.
 nlohmann::json about_team(const Team* team);
 
-/// Errors: members have laid the scene out differently (bad_input), another member gives up.
-Status check_same_layout(Team* team, uint64_t digest, Progress& progress);
-
 }  // namespace luxel::pipeline

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <span>
 
+#include "luxel/base/digest.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/base/share_out.h"
 #include "luxel/import/import.h"
+#include "luxel/pipeline/reuse/same_work.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/viewfactor/sampled_factors.h"
 #include "luxel/viewfactor/smooth_factors.h"
@@ -134,8 +136,8 @@ Result<viewfactor::Surfaces> read_surfaces(const FactorSettings& s, scene::Scene
 
 Result<viewfactor::FactorMatrix> compute(const FactorSettings& s, const scene::Scene& scene,
                                          const viewfactor::Surfaces& surfaces,
-                                         const viewfactor::FactorSelection& selection,
-                                         Team* team, Progress& progress) {
+                                         const viewfactor::FactorSelection& selection, Team* team,
+                                         Progress& progress) {
   if (s.method == "analytic")
     return viewfactor::analytic_factors(surfaces, {.tolerance = s.tolerance.value_or(1e-4)},
                                         selection, progress, team);
@@ -229,8 +231,16 @@ std::string factors_csv(const viewfactor::FactorMatrix& matrix,
 
 namespace {
 
+/// A digest of what decides how the work is shared out, and its results.
+uint64_t digest_of(const FactorSettings& s) {
+  Digest digest;
+  digest.add(s.method), digest.add(s.tolerance.value_or(0)), digest.add(s.samples.value_or(0));
+  digest.add(s.hemicube.value_or(0)), digest.add(s.from), digest.add(s.to), digest.add(s.seed);
+  return digest.value();
+}
+
 Result<FactorReport> make_report(const FactorSettings& settings, Team* team, Progress& progress) {
-  LUXEL_TRY_STATUS(check(settings));
+  if (!team || team->rank() == 0) LUXEL_TRY_STATUS(check(settings));  // who writes the table
   // The surfaces, and those that are asked for.
   progress.begin("read scene", 1);
   LUXEL_TRY(import::Imported imported,
@@ -239,10 +249,12 @@ Result<FactorReport> make_report(const FactorSettings& settings, Team* team, Pro
   report.warnings = std::move(imported.warnings);
   LUXEL_TRY(const viewfactor::Surfaces surfaces,
             read_surfaces(settings, imported.scene, report, progress));
+  LUXEL_TRY_STATUS(check_same_work(team, imported.scene, digest_of(settings), progress));
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   // Their view factors, and how well they are known.
-  LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, team, progress));
+  LUXEL_TRY(report.matrix,
+            compute(settings, imported.scene, surfaces, report.selection, team, progress));
   LUXEL_TRY_STATUS(leave_rest_to_first(team));
   report.warnings.insert(report.warnings.end(), report.matrix.warnings.begin(),
                          report.matrix.warnings.end());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/digest.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
@@ -13,6 +14,7 @@
 #include "luxel/export/baked_glb.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/command/relight_error.h"
+#include "luxel/pipeline/reuse/same_work.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -223,9 +225,8 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
             as_if_lit(scene, [&] { return open_backs(scene, progress); }));
   params.max_error = float(s.max_error), params.bounces = s.bounces;
   CheckedTarget checked = with_places(std::move(wanted.target), places_to_check(scene, s.seed));
-  LUXEL_TRY(out.data,
-            matrix::make_relight_data(scene, tracer, std::move(checked.target), params, progress,
-                                      team));
+  LUXEL_TRY(out.data, matrix::make_relight_data(scene, tracer, std::move(checked.target), params,
+                                                progress, team));
   LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, out.data, progress));
   if (!std::isfinite(out.data.baked_error) || !std::isfinite(out.data.lamp_error))
     return tl::unexpected(scene::overflow_at(scene, scene::world_bounds(scene).centre()));
@@ -249,9 +250,19 @@ Result<nlohmann::json> write_relightable(const RelightSettings& s, const Relight
 
 namespace {
 
+/// A digest of what decides how the work is shared out, and its results.
+uint64_t digest_of(const RelightSettings& s) {
+  Digest digest;
+  digest.add(s.target), digest.add(s.resolution), digest.add(s.texels_per_metre);
+  digest.add(int(s.uv)), digest.add(s.matrix.patches.count);
+  digest.add(s.matrix.factors.rays_per_patch), digest.add(s.codec), digest.add(s.seed);
+  digest.add(s.max_error), digest.add(s.bounces);
+  return digest.value();
+}
+
 Result<nlohmann::json> relight_alone_or_together(const RelightSettings& s, Team* team,
                                                  Progress& progress) {
-  LUXEL_TRY_STATUS(check(s));
+  if (!team || team->rank() == 0) LUXEL_TRY_STATUS(check(s));  // who writes the file
   const ThreadLimit threads(s.threads);
   progress.begin("import", 0);
   LUXEL_TRY(import::Imported imported,
@@ -259,6 +270,7 @@ Result<nlohmann::json> relight_alone_or_together(const RelightSettings& s, Team*
   // A scene without light is no mistake here: its lights come later.
   if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
     LUXEL_TRY_STATUS(add_outside_light(s.outside, imported.scene));
+  LUXEL_TRY_STATUS(check_same_work(team, imported.scene, digest_of(s), progress));
   LUXEL_TRY(Relightable made, make_relightable(std::move(imported.scene), s, progress, team));
   made.warnings.insert(made.warnings.begin(), imported.warnings.begin(), imported.warnings.end());
   return write_relightable(s, made, progress);

@@ -37,7 +37,15 @@ std::vector<fs::path> part_files_in(const fs::path& folder) {
 }
 
 std::vector<fs::path> checkpoints_in(const fs::path& folder) {
-  return files_named(folder, "checkpoint", ".luxel");
+  std::vector<fs::path> out = files_named(folder, "checkpoint", ".luxel");
+  // checkpoint.luxel and checkpoint-3.luxel; not what somebody has put beside them.
+  std::erase_if(out, [](const fs::path& file) {
+    std::string rest = file.stem().string().substr(std::string_view("checkpoint").size());
+    if (rest.empty()) return false;
+    return rest.size() < 2 || rest[0] != '-' ||
+           rest.find_first_not_of("0123456789", 1) != std::string::npos;
+  });
+  return out;
 }
 
 std::vector<fs::path> other_parts(const BakeSettings& settings, const fs::path& own) {

@@ -13,7 +13,8 @@ namespace luxel::pipeline {
 /// process of several that bake together FOLDER/checkpoint-3.luxel. `team`: null: there is one.
 std::filesystem::path parts_file(const BakeSettings& settings, const Team* team = nullptr);
 
-/// All checkpoints in a bake's folder, by name: those of several processes, too.
+/// All files in a folder that are named as checkpoints are, by name: those of several processes,
+/// too.
 std::vector<std::filesystem::path> checkpoints_in(const std::filesystem::path& folder);
 
 /// The files of parts in a folder, by name.

@@ -137,18 +137,18 @@ Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& heade
   const bool are_checkpoints = settings_.part.is_all() && settings_.parts.empty();
   std::vector<RecordFile> out;
   for (const fs::path& file : other_parts(settings_, file_)) {
-    LUXEL_TRY(RecordFile other, RecordFile::open_to_read(file));
-    const std::string different = difference_of(other, header);
+    Result<RecordFile> other = RecordFile::open_to_read(file);
+    if (!other && !are_checkpoints) return tl::unexpected(other.error());
+    const std::string different = other ? difference_of(*other, header) : other.error().message;
     if (!different.empty() && are_checkpoints) {
-      progress.note(fmt::format("{} is of another bake: {}; it is left alone", file.string(),
-                                different));
+      progress.note(fmt::format("{} is left alone: {}", file.string(), different));
       continue;
     }
     if (!different.empty())
       return fail(ErrorCode::bad_setting,
                   "{} is of another bake: {}; take it away, or give another --output",
                   file.string(), different);
-    out.push_back(std::move(other));
+    out.push_back(std::move(*other));
   }
   return out;
 }
@@ -159,6 +159,7 @@ Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   described["bake"] = *all_settings_;
   // Names of things may be no UTF-8, which JSON knows nothing else of.
   const std::string header = described.dump(-1, ' ', false, json::error_handler_t::replace);
+  header_ = header;
   LUXEL_TRY(std::optional<RecordFile> found, own_file(header, progress));
   LUXEL_TRY(std::vector<RecordFile> others, other_files(header, progress));
   resumed_ = resumed_ || (settings_.resume && !others.empty());
@@ -185,20 +186,18 @@ json Checkpoint::about() const {
   return out;
 }
 
-bool Checkpoint::has_file() const {
-  std::error_code ignored;
-  return parts_ && fs::exists(file_, ignored);
-}
+bool Checkpoint::has_file() const { return parts_ && !checkpoints_in(settings_.output).empty(); }
 
 void Checkpoint::remove() {
   if (!parts_) return;
   parts_.reset();
   std::error_code ignored;
-  std::vector<fs::path> files{file_};
-  if (settings_.part.is_all()) files = checkpoints_in(settings_.output);
-  files.push_back(file_);
-  for (const fs::path& file : files)
-    fs::remove(file, ignored), fs::remove(RecordFile::unfinished_name(file), ignored);
+  fs::remove(file_, ignored), fs::remove(RecordFile::unfinished_name(file_), ignored);
+  if (!settings_.part.is_all()) return;
+  for (const fs::path& file : checkpoints_in(settings_.output)) {
+    const auto other = RecordFile::open_to_read(file, RecordFile::Check::when_read);
+    if (other && difference_of(*other, header_).empty()) fs::remove(file, ignored);
+  }
 }
 
 }  // namespace luxel::pipeline

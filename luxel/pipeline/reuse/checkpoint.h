@@ -45,7 +45,7 @@ class Checkpoint {
   nlohmann::json about() const;
   /// Whether a file is there that takes room on the disk.
   bool has_file() const;
-  /// The bake is done, or must do without: nothing of it stays, of no process.
+  /// The bake is done, or must do without: nothing of it stays, by whichever process.
   void remove();
 
  private:
@@ -57,7 +57,7 @@ class Checkpoint {
   std::unique_ptr<nlohmann::json> identity_, all_settings_;
   std::chrono::steady_clock::time_point start_;
   bool resumed_ = false;
-  std::string note_;
+  std::string note_, header_;
   std::optional<PartStore> parts_;
 };
 

@@ -105,12 +105,9 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
     progress.expect(stages_of(forecast));
     return {};
   }
-  LUXEL_TRY(double left,
-            first_of(stores.team,
-                     settings.time_budget_s -
-                         stage_seconds(progress.stages())["total"].get<double>(),
-                     progress));
+  double left = settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
   for (const Stage& stage : after) left -= stage.seconds;
+  LUXEL_TRY(left, first_of(stores.team, left, progress));
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(
         fmt::format("--time-budget {} leaves {:.1f} s for light, after reading and laying out the "
@@ -248,7 +245,8 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
       earlier = earlier_of(*found, *rays, update, change, in, told_apart);
   }
   const uint64_t bytes =
-      bytes_of_gather(in, settings, stores, bool(observer.on_estimate), layers.size());
+      bytes_of_gather(in, settings, stores, bool(observer.on_estimate), layers.size()) +
+      (stores.team ? 2 * kTeamBytesAtATime : 0);
   LUXEL_TRY(own.hit_memory_bytes, memory_to_spare(in, settings, bytes, kMinHitBytes));
   std::vector<std::string> warnings;
   if (earlier)

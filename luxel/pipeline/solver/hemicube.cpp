@@ -27,7 +27,7 @@ constexpr double kMaxElements = 1 << 26;
 
 /// Elements are few, and their light is stretched over their triangles: shadows get more rays for
 /// each of --direct-samples, as the help of that option says.
-constexpr int kShadowRaysPerSample = 4, kMostShadowRays = 65535;
+constexpr int kShadowRaysPerSample = 4, kMostShadowRaysOfElement = 65535;
 
 /// Whether the field has no light of its own at a texel.
 bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
@@ -154,7 +154,7 @@ Options<hemicube::HemicubeParams> hemicube_options() {
 hemicube::HemicubeParams hemicube_params(const BakeSettings& settings) {
   hemicube::HemicubeParams params = settings.own.of<hemicube::HemicubeParams>();
   params.direct_samples =
-      std::min(kShadowRaysPerSample * first_direct_samples(settings), kMostShadowRays);
+      std::min(kShadowRaysPerSample * first_direct_samples(settings), kMostShadowRaysOfElement);
   params.bounces = settings.bounces, params.seed = settings.seed;
   return params;
 }

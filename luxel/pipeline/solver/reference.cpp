@@ -35,7 +35,7 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
     LUXEL_CHECK(!on || on->paths);
     return on ? on->paths->irradiance(in.scene, in.tracer, receivers, params, progress)
               : reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress,
-                                             stores.team);
+                                               stores.team);
   };
   TookPart part;
   LUXEL_TRY(reference::TexelPaths result, run_on_any(stores.device, follow, part));

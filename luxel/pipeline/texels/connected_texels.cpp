@@ -92,8 +92,8 @@ Result<std::vector<uint32_t>> connected_texels(const light::TexelScene& in,
   const auto join = [&](uint32_t a, uint32_t b) {
     if (!hidden[a] && !hidden[b]) regions.join(a, b);
   };
-  LUXEL_TRY_STATUS(transport::for_open_neighbours(in.scene, in.atlas, in.map, in.tracer, join,
-                                                  progress, team));
+  LUXEL_TRY_STATUS(
+      transport::for_open_neighbours(in.scene, in.atlas, in.map, in.tracer, join, progress, team));
   LUXEL_TRY(const std::vector<post::Seam> open,
             open_seams(in.scene, in.atlas, in.tracer,
                        post::find_seams(in.scene, in.atlas, kMaxAngle_rad), progress, team));

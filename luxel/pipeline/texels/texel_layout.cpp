@@ -41,9 +41,9 @@ Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, Te
   atlas::AtlasParams grouped = params;
   uint32_t cuts = 0;
   for (int k = 0;; ++k) {
-    LUXEL_TRY(const std::vector<atlas::PartedPoints> parted,
-              transport::find_parted(scene, layout.atlas, layout.map, layout.tracer, progress,
-                                     team));
+    LUXEL_TRY(
+        const std::vector<atlas::PartedPoints> parted,
+        transport::find_parted(scene, layout.atlas, layout.map, layout.tracer, progress, team));
     layout.repair.parted = parted.size(), layout.repair.cuts = cuts;
     if (layout.atlas.kept || k == kMostTimes || parted.size() < atlas::kFewestParted) return {};
     atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted, grouped.group);
@@ -191,12 +191,13 @@ Result<std::vector<post::Seam>> open_seams(const scene::Scene& scene, const atla
                                            std::span<const post::Seam> seams, Progress& progress,
                                            Team* team) {
   constexpr size_t kBlock = 256;
-  return share_lists<post::Seam>(
-      team, seams.size(), kBlock, progress, [&](size_t begin, size_t end) {
-        std::vector<post::Seam> open;
-        for (size_t i = begin; i < end; ++i) add_open(scene, atlas, tracer, seams[i], open);
-        return open;
-      });
+  return share_lists<post::Seam>(team, seams.size(), kBlock, progress,
+                                 [&](size_t begin, size_t end) {
+                                   std::vector<post::Seam> open;
+                                   for (size_t i = begin; i < end; ++i)
+                                     add_open(scene, atlas, tracer, seams[i], open);
+                                   return open;
+                                 });
 }
 
 }  // namespace luxel::pipeline

@@ -45,8 +45,10 @@ std::vector<TeamCase> cases() {
   rms.error_measure = ErrorMeasure::rms, rms.max_error = 0.02f;
   GatherParams two = plain;
   two.bounces = 2, two.tells_direct = true;
-  return {{"Samples", plain},           {"ErrorP95", p95},
-          {"ErrorRms", rms, false, true}, {"Layers", plain, true},
+  return {{"Samples", plain},
+          {"ErrorP95", p95},
+          {"ErrorRms", rms, false, true},
+          {"Layers", plain, true},
           {"TwoBounces", two}};
 }
 
@@ -104,8 +106,7 @@ TEST(GatherOfATeam, EndsForAllWhenOneGivesUp) {
     Progress progress;
     GatherStores stores{.team = &team};
     if (team.rank() == 2) stores.hit_memory_bytes = 0, stores.scratch_folder = "absent";
-    const auto result =
-        gather(scene_of(*room), nullptr, with_samples(64, 8), stores, {}, progress);
+    const auto result = gather(scene_of(*room), nullptr, with_samples(64, 8), stores, {}, progress);
     ASSERT_FALSE(result);
     team.give_up(result.error());
     messages[team.rank()] = result.error().message;

@@ -173,8 +173,7 @@ Result<bool> next_round(const Request& in, double seconds_left, Progressive& lig
   // A time budget takes both kinds of rays back to what it can pay for, and ends the rounds.
   double affordable = INFINITY;
   if (params.seconds > 0) {
-    LUXEL_TRY(affordable,
-              first_of(in.stores.team, affordable_rays(light, seconds_left), progress));
+    LUXEL_TRY(affordable, first_of(in.stores.team, affordable_rays(light, seconds_left), progress));
     if (affordable < kSmallestRound * double(light.hits.rays)) return false;
   }
   const bool is_rms = params.error_measure == ErrorMeasure::rms;

@@ -105,7 +105,7 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
                          double(std::max<uint64_t>(sum_of(light.hits.samples), 1));
   // What was kept says nothing about how long the rays of later rounds take.
   const Progress::Snapshot stage = progress.snapshot();
-  if (stage.total == stage.skipped) return {};
+  if (stage.total <= stage.skipped) return {};
   light.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
   light.traced_rays = light.hits.rays - before;
   light.traced_samples = sum_of(light.hits.samples) - samples;

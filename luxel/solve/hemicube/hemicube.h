@@ -28,7 +28,7 @@ struct HemicubeParams {
   uint64_t row_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
   LookDevice* device = nullptr;  ///< what looks through hemicubes; null: the processor
-  Team* team = nullptr;  ///< whose members share hemicubes and their rows out; null: none
+  Team* team = nullptr;          ///< whose members share hemicubes and their rows out; null: none
 };
 
 inline constexpr int kMaxResolution = 2048;

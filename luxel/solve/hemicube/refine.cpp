@@ -170,26 +170,23 @@ double relative_interpolation_error(const Field& field) {
 
 Result<Sight> look_from(const SendingScene& around, const transport::Elements& elements,
                         const HemicubeParams& params, Solution& solution, Progress& progress) {
-  LUXEL_TRY(
-      light::DirectLight direct,
-      light::direct_light(
-          around.scene, elements, around.emission.exact, around.tracer,
-          {.samples = params.direct_samples,
-           .seed = params.seed,
-           .same_points = true,
-           .team = params.team},
-          progress));
+  LUXEL_TRY(light::DirectLight direct,
+            light::direct_light(around.scene, elements, around.emission.exact, around.tracer,
+                                {.samples = params.direct_samples,
+                                 .seed = params.seed,
+                                 .same_points = true,
+                                 .team = params.team},
+                                progress));
   const Senders senders{around.scene,
                         around.tracer,
                         around.mesh,
                         around.senders,
                         around.emission.exact.around,
                         around.emission.by_pixels};
-  RowParams of_rows{.look = {.resolution = params.resolution,
-                             .device = params.device,
-                             .team = params.team},
-                    .memory_limit_bytes = params.row_memory_bytes,
-                    .scratch_folder = params.scratch_folder};
+  RowParams of_rows{
+      .look = {.resolution = params.resolution, .device = params.device, .team = params.team},
+      .memory_limit_bytes = params.row_memory_bytes,
+      .scratch_folder = params.scratch_folder};
   if (around.observer && around.observer->on_direct) around.observer->on_direct(direct.irradiance);
   if (around.observer && around.observer->on_view)
     of_rows.on_view = [&](size_t i, const View& view) {

@@ -260,19 +260,18 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
     }
   };
   LUXEL_TRY(const std::vector<uint32_t> own, share_out(team, pieces, progress, look));
-  LUXEL_TRY_STATUS(exchange(
-      team, own,
-      {pieces,
-       [&](size_t piece, ByteWriter& bytes) {
-         for (size_t i = piece * kPatchesPerPiece; i < end_of(piece); ++i)
-           put_row(rows[i], out.sky[i], bytes);
-       },
-       [&](size_t piece, uint32_t, ByteReader& bytes) {
-         for (size_t i = piece * kPatchesPerPiece; i < end_of(piece); ++i)
-           get_row(bytes, rows[i], out.sky[i]);
-         return bytes.ok;
-       }},
-      progress));
+  LUXEL_TRY_STATUS(exchange(team, own,
+                            {pieces,
+                             [&](size_t piece, ByteWriter& bytes) {
+                               for (size_t i = piece * kPatchesPerPiece; i < end_of(piece); ++i)
+                                 put_row(rows[i], out.sky[i], bytes);
+                             },
+                             [&](size_t piece, uint32_t, ByteReader& bytes) {
+                               for (size_t i = piece * kPatchesPerPiece; i < end_of(piece); ++i)
+                                 get_row(bytes, rows[i], out.sky[i]);
+                               return bytes.ok;
+                             }},
+                            progress));
   out.factors = joined(rows);
   out.rays = uint64_t(rays) * patches.size();
   return out;

@@ -45,8 +45,8 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
                   "light '{}' has a light profile, which .lxr files do not keep; leave it out",
                   light.name);
   LUXEL_TRY(const Prepared prepared,
-            prepare(scene, tracer, {.patches = params.patches, .factors = params.factors},
-                    progress, team));
+            prepare(scene, tracer, {.patches = params.patches, .factors = params.factors}, progress,
+                    team));
   LUXEL_TRY_STATUS(leave_rest_to_first(team));
   const Patches& patches = prepared.patched.patches;
   RelightData out;

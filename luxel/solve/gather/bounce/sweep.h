@@ -39,8 +39,8 @@ struct Sweep {
 };
 
 /// Hits on a device are swept there, with stride 1 alone; those of a team by their owners, and all
-/// members get irradiance and change2 of all elements, but variances of their own alone. Errors: the
-/// file of hits cannot be read, the device is lost, another member gives up, cancelled.
+/// members get irradiance and change2 of all elements, but variances of their own alone. Errors:
+/// the file of hits cannot be read, the device is lost, another member gives up, cancelled.
 Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress);
 /// Gives all members of a team the variances that run_sweep() has left with each. Errors: another
 /// member gives up, cancelled.

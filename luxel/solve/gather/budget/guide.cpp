@@ -158,14 +158,16 @@ Result<Guide> make_guide(const light::TexelScene& in, const transport::OwnSides&
     const auto [begin, end] = of_piece(piece);
     return std::span(out.groups).subspan(begin, end - begin);
   };
-  LUXEL_TRY_STATUS(exchange(
-      light.team, own,
-      {pieces, [&](size_t piece, ByteWriter& bytes) { bytes.put(std::span<const GuidedGroup>(groups_of_piece(piece))); },
-       [&](size_t piece, uint32_t, ByteReader& bytes) {
-         bytes.get(groups_of_piece(piece));
-         return bytes.ok;
-       }},
-      progress));
+  LUXEL_TRY_STATUS(exchange(light.team, own,
+                            {pieces,
+                             [&](size_t piece, ByteWriter& bytes) {
+                               bytes.put(std::span<const GuidedGroup>(groups_of_piece(piece)));
+                             },
+                             [&](size_t piece, uint32_t, ByteReader& bytes) {
+                               bytes.get(groups_of_piece(piece));
+                               return bytes.ok;
+                             }},
+                            progress));
   out.of_element = std::move(groups.of_element);
   return out;
 }

@@ -20,8 +20,9 @@
 namespace luxel::gather {
 
 struct RepeatParams {
-  light::SupersampleParams direct;           ///< as the light's, and its team; parts and layers are not looked at
-  bool follows_near = true;                  ///< as TraceParams has it
+  light::SupersampleParams
+      direct;                ///< as the light's, and its team; parts and layers are not looked at
+  bool follows_near = true;  ///< as TraceParams has it
   uint64_t memory_limit_bytes = UINT64_MAX;  ///< for hits; the rest goes to temporary files
   std::filesystem::path scratch_folder = ".";
 };

@@ -40,8 +40,8 @@ inline size_t tile_count(const TracedHits& hits) {
   return (hits.size() + kTileElements - 1) / kTileElements;
 }
 
-/// Calls take(t, tile) for each tile that is here, on several threads. Errors: the file of hits cannot be read,
-/// cancelled.
+/// Calls take(t, tile) for each tile that is here, on several threads. Errors: the file of hits
+/// cannot be read, cancelled.
 template <class Take>
 Status for_each_tile(const TracedHits& hits, Progress& progress, const Take& take) {
   std::mutex mutex;

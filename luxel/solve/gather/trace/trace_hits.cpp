@@ -293,8 +293,8 @@ void TileRound::make(size_t tile) {
   progress.request_cancel();
 }
 
-/// Gives all members of the team what rays of own tiles have met, but for the hits. Errors: those of
-/// exchange().
+/// Gives all members of the team what rays of own tiles have met, but for the hits. Errors: those
+/// of exchange().
 Status give_counts(Team* team, std::span<const uint32_t> own, TileRound& tiles) {
   TracedHits& hits = tiles.hits;
   return exchange(team, own,
@@ -317,10 +317,14 @@ Status trace_tiles(const Round& round, const TraceParams& params, const KeptStag
                    TracedHits& hits, HitStore& store, Progress& progress) {
   const size_t count = tile_count(hits);
   Team* const team = params.team;
-  TileRound tiles{round,    kept,
-                  params.keep, hits,
-                  store,    progress,
-                  places_of(round.ray_scene.atlas), std::vector<uint64_t>(count)};
+  TileRound tiles{round,
+                  kept,
+                  params.keep,
+                  hits,
+                  store,
+                  progress,
+                  places_of(round.ray_scene.atlas),
+                  std::vector<uint64_t>(count)};
   const auto make = [&](size_t tile) { tiles.make(tile); };
   std::vector<uint32_t> own;
   Status done;
@@ -329,8 +333,10 @@ Status trace_tiles(const Round& round, const TraceParams& params, const KeptStag
     done = do_own(team, own, progress, make);
   } else {
     auto shared_out = share_out(team, count, progress, make);
-    if (shared_out) own = std::move(*shared_out);
-    else done = tl::unexpected(shared_out.error());
+    if (shared_out)
+      own = std::move(*shared_out);
+    else
+      done = tl::unexpected(shared_out.error());
   }
   LUXEL_TRY_STATUS(tiles.status);
   LUXEL_TRY_STATUS(done);
@@ -361,7 +367,9 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   LUXEL_TRY(HitStore store,
             HitStore::create(elements.size(), kTileElements, most_added(target, hits),
                              params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
-                             params.scratch_folder));
+                             params.scratch_folder,
+                             params.team ? TilesInMemory::first_come
+                                         : TilesInMemory::first_numbers));
   const SceneOfRays scene(in, params);
   if (scene.rays().sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
   std::vector<uint64_t> doubtful;

@@ -53,8 +53,8 @@ struct AnalyticParams {
 };
 /// In closed form, past blockers by subdivision (visible_form_factor.h). Each pair is computed once
 /// and serves both directions. A pair of surfaces in which max_cells ended the work leaves a
-/// warning that names it and the error reached. Members of a team share pairs out. Errors: cancelled,
-/// another member of the team gives up.
+/// warning that names it and the error reached. Members of a team share pairs out. Errors:
+/// cancelled, another member of the team gives up.
 Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticParams& params,
                                       const FactorSelection& selection, Progress& progress,
                                       Team* team = nullptr);

@@ -75,11 +75,11 @@ float append_row(const View& view, RowTile<RowEntry>& tile) {
 Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
                        const RowParams& params, Progress& progress) {
   const size_t count = from.size();
-  LUXEL_TRY(auto store, RowStore<RowEntry>::create(
-                            count, kTileElements, max_row_entries(senders, params.look.resolution),
-                            params.memory_limit_bytes, params.scratch_folder,
-                            params.look.team ? TilesInMemory::first_come
-                                             : TilesInMemory::first_numbers));
+  LUXEL_TRY(auto store,
+            RowStore<RowEntry>::create(
+                count, kTileElements, max_row_entries(senders, params.look.resolution),
+                params.memory_limit_bytes, params.scratch_folder,
+                params.look.team ? TilesInMemory::first_come : TilesInMemory::first_numbers));
   Rows rows{std::move(store), params.look.team, {}, {}, {}, {}, {}, {}, {}};
   rows.scale.resize(count), rows.emitted.resize(count);
   rows.hidden.resize(count), rows.enclosed.resize(count);

@@ -364,12 +364,12 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
               elements.size() * (params.layers ? params.layers->size() : 0));
   // Hits of this round go to memory as far as those of the rounds before leave room.
   const uint64_t used = hits.bytes_in_memory();
-  LUXEL_TRY(HitStore store,
-            HitStore::create(elements.size(), kTileElements, most_added(target, hits),
-                             params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
-                             params.scratch_folder,
-                             params.team ? TilesInMemory::first_come
-                                         : TilesInMemory::first_numbers));
+  LUXEL_TRY(
+      HitStore store,
+      HitStore::create(elements.size(), kTileElements, most_added(target, hits),
+                       params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
+                       params.scratch_folder,
+                       params.team ? TilesInMemory::first_come : TilesInMemory::first_numbers));
   const SceneOfRays scene(in, params);
   if (scene.rays().sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
   std::vector<uint64_t> doubtful;

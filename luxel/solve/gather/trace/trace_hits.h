@@ -59,8 +59,8 @@ struct TraceParams {
 /// already the new ones are at least as many, so that the old ones lie in the first half of all.
 /// Directions are those of an Owen-scrambled Sobol sequence of its own per element,
 /// cosine-distributed about the shading normal [Moreno05, eq. 3.7]; those below the triangle itself
-/// are mirrored to above it. Errors: cancelled, disk full, another member of the team gives up; hits
-/// are of no use then.
+/// are mirrored to above it. Errors: cancelled, disk full, another member of the team gives up;
+/// hits are of no use then.
 Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const TraceParams& params,
                   TracedHits& hits, Progress& progress);
 

@@ -23,7 +23,7 @@ std::string about_processes(const cluster::Joined& joined) {
 /// The first process says what went wrong, and mpirun ends the others then. Where it does not in
 /// time, since it is at work on something else, this one does.
 void say_when_nobody_does(const cluster::Joined& joined, const std::string& unsaid) {
-  std::this_thread::sleep_for(std::chrono::seconds(5));
+  std::this_thread::sleep_for(std::chrono::seconds(10));
   std::fprintf(stderr, "luxel: process %u of %d: %s\n", joined.team ? joined.team->rank() : 0,
                joined.processes, unsaid.c_str());
 }

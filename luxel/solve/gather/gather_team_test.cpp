@@ -34,6 +34,8 @@ struct TeamCase {
   std::string name;
   GatherParams params;
   bool layers = false, in_file = false;
+
+  friend void PrintTo(const TeamCase& c, std::ostream* out) { *out << c.name; }
 };
 
 std::vector<TeamCase> cases() {

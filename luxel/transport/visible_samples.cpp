@@ -1,102 +1,27 @@
 #include "luxel/transport/visible_samples.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
-#include <optional>
 
-#include "luxel/atlas/cover.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/share_out.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/drawn_triangle.h"
-#include "luxel/transport/back_faces.h"
-#include "luxel/transport/barriers.h"
 #include "luxel/transport/clear_runs.h"
+#include "luxel/transport/open_places.h"
 #include "luxel/transport/texel_width.h"
 
 namespace luxel::transport {
 namespace {
 
-constexpr int kGrid = 4;               ///< places looked at along a texel's side
 constexpr int kFeelers = 6;            ///< short rays around a sample
 constexpr float kReach = 1.5f;         ///< their length in texels
 constexpr float kFeelerSlope = 0.34f;  ///< the sine of the angle at which they rise: 20 degrees
 /// Charts of no more texels are looked at texel by texel: they fall between those of a lattice.
 constexpr uint32_t kSmallChart = 32;
-/// Places looked at in the part of a texel that a chart covers, at most.
-constexpr size_t kMostPlaces = 48;
 
-/// The drawn triangles of each chart: those of chart c are all[first[c]] up to all[first[c + 1]].
-struct ChartTriangles {
-  std::vector<uint32_t> first, all;
-};
-
-ChartTriangles triangles_of_charts(const atlas::Atlas& atlas) {
-  ChartTriangles out{std::vector<uint32_t>(atlas.chart_count + 1), {}};
-  for (const uint32_t chart : atlas.chart) ++out.first[chart + 1];
-  std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
-  out.all.resize(atlas.chart.size());
-  std::vector<uint32_t> next = out.first;
-  for (uint32_t t = 0; t < atlas.chart.size(); ++t) out.all[next[atlas.chart[t]]++] = t;
-  return out;
-}
-
-/// A place of a triangle in a texel.
-struct Place {
-  Vec2 texels;
-  uint32_t triangle = 0;  ///< among all that are drawn
-  Barycentric at;
-};
-
-/// The middles of the four quarters of a triangle, as weights of its corners.
-constexpr std::array<std::array<double, 3>, 4> kQuarters{{{1 / 3.0, 1 / 3.0, 1 / 3.0},
-                                                          {2 / 3.0, 1 / 6.0, 1 / 6.0},
-                                                          {1 / 6.0, 2 / 3.0, 1 / 6.0},
-                                                          {1 / 6.0, 1 / 6.0, 2 / 3.0}}};
-
-/// Places all over the part of a triangle that lies in a texel.
-void add_places(const atlas::Atlas& atlas, uint32_t triangle, const atlas::Texel& texel,
-                std::vector<Place>& places) {
-  const auto& c = atlas.corners[triangle];
-  const DVec2 a = to_double(c[0]), b = to_double(c[1]), d = to_double(c[2]);
-  const int x = int(texel.x), y = int(texel.y);
-  if (std::max({a.x, b.x, d.x}) < x || std::min({a.x, b.x, d.x}) > x + 1 ||
-      std::max({a.y, b.y, d.y}) < y || std::min({a.y, b.y, d.y}) > y + 1)
-    return;
-  const double area2 = cross(b - a, d - a);
-  const auto add = [&](double u, double v) {
-    const Barycentric at{float(u), float(v)};
-    if (at.u > 0 && at.v > 0 && at.u + at.v < 1)
-      places.push_back({interpolate(c[0], c[1], c[2], at), triangle, at});
-  };
-  if (area2 == 0) {  // squeezed to a line: its texels belong to all of it
-    for (const auto& q : kQuarters)
-      for (const auto& r : kQuarters) add((q[1] + r[1]) / 2, (q[2] + r[2]) / 2);
-    return;
-  }
-  const auto [corner, count] = atlas::clipped_corners(atlas::uv_triangle({a, b, d}), x, y);
-  for (size_t k = 2; k < count; ++k)
-    for (const auto& q : kQuarters) {
-      const DVec2 p = corner[0] * q[0] + corner[k - 1] * q[1] + corner[k] * q[2] +
-                      DVec2{double(x), double(y)} - a;
-      add(cross(p, d - a) / area2, cross(b - a, p) / area2);
-    }
-}
-
-struct Probe {
-  const scene::Scene& scene;
-  const atlas::Atlas& atlas;
-  const trace::RayTracer& tracer;
-  float diagonal_m;
-
-  Vec3 just_above(const FlatPoint& p) const {
-    return trace::offset_origin(p.position, p.normal, diagonal_m);
-  }
-  bool in_the_open(const scene::SurfacePoint& p) const {
-    const FlatPoint at = flat_point(scene, p);
-    return is_in_the_open(scene, tracer, just_above(at), at.normal, diagonal_m);
-  }
+/// What looks around samples.
+struct Probe : PlaceSearch {
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {
     const FlatPoint at = flat_point(scene, texel.sample);
@@ -118,75 +43,7 @@ struct Probe {
     return is_clear(scene, atlas, map, tracer, run,
                     {0.5f * rounding_m, 1.01f * kReach * kFeelerSlope, kReach, true});
   }
-
-  /// The place of the texel's grid that is nearest to the middle of those in the open; nothing:
-  /// none is, or all are and the sample, too.
-  std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel, bool is_open) const;
-  /// An open place in all that the texel's chart covers, by whichever triangle: of charts thinner
-  /// than a texel the grid may meet nothing.
-  std::optional<Place> open_place(const atlas::Texel& texel, const ChartTriangles& charts) const;
 };
-
-/// The places of the grid, its corners first.
-constexpr auto kPlaces = [] {
-  std::array<Vec2, kGrid * kGrid> out{};
-  size_t corners = 0, others = 4;
-  for (int j = 0; j < kGrid; ++j)
-    for (int i = 0; i < kGrid; ++i) {
-      const bool is_corner = i % (kGrid - 1) == 0 && j % (kGrid - 1) == 0;
-      out[is_corner ? corners++ : others++] = {(float(i) + 0.5f) / kGrid,
-                                               (float(j) + 0.5f) / kGrid};
-    }
-  return out;
-}();
-
-std::optional<scene::SurfacePoint> Probe::open_place(const atlas::Texel& texel,
-                                                     bool is_open) const {
-  const auto& corners = atlas.corners[texel.triangle_number];
-  struct Candidate {
-    Vec2 place;
-    Barycentric at;
-  };
-  std::vector<Candidate> open;
-  Vec2 middle{0, 0};
-  size_t in_triangle = 0;
-  for (size_t k = 0; k < kPlaces.size(); ++k) {
-    // Four corners like the sample between them: so are most texels all over, and one across a
-    // straight edge never is.
-    if (k == 4 && in_triangle == 4 && open.size() == (is_open ? 4u : 0u)) return {};
-    const Vec2 p = Vec2{float(texel.x), float(texel.y)} + kPlaces[k];
-    const Barycentric at = atlas::barycentric_in(corners, p);
-    if (at.u <= 0 || at.v <= 0 || at.u + at.v >= 1) continue;
-    ++in_triangle;
-    if (!in_the_open({texel.sample.instance, texel.sample.triangle, at})) continue;
-    open.push_back({p, at}), middle = middle + p;
-  }
-  if (open.empty() || (is_open && open.size() == in_triangle)) return {};
-  middle = middle * (1 / float(open.size()));
-  const auto nearest = std::ranges::min_element(
-      open, {}, [&](const Candidate& c) { return length(c.place - middle); });
-  return scene::SurfacePoint{texel.sample.instance, texel.sample.triangle, nearest->at};
-}
-
-std::optional<Place> Probe::open_place(const atlas::Texel& texel,
-                                       const ChartTriangles& charts) const {
-  const uint32_t chart = atlas.chart[texel.triangle_number];
-  std::vector<Place> places, open;
-  for (uint32_t k = charts.first[chart]; k < charts.first[chart + 1]; ++k)
-    add_places(atlas, charts.all[k], texel, places);
-  const size_t step = (places.size() + kMostPlaces - 1) / kMostPlaces;
-  Vec2 middle{0, 0};
-  for (size_t k = 0; k < places.size(); k += step) {
-    const auto [instance, triangle] =
-        scene::drawn_triangle(atlas.first_triangle, places[k].triangle);
-    if (!in_the_open({instance, triangle, places[k].at})) continue;
-    open.push_back(places[k]), middle = middle + places[k].texels;
-  }
-  if (open.empty()) return {};
-  middle = middle * (1 / float(open.size()));
-  return *std::ranges::min_element(open, {},
-                                   [&](const Place& p) { return length(p.texels - middle); });
-}
 
 /// What is known of a texel.
 enum class Found : uint8_t { nothing, back_near, enclosed, moved };
@@ -314,7 +171,7 @@ std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Fo
   return out;
 }
 
-void move_to(const atlas::Atlas& atlas, const Place& place, atlas::Texel& texel) {
+void move_to(const atlas::Atlas& atlas, const ChartPlace& place, atlas::Texel& texel) {
   const auto [instance, triangle] = scene::drawn_triangle(atlas.first_triangle, place.triangle);
   texel.sample = {instance, triangle, place.at};
   texel.triangle_number = place.triangle & 0x7fffffffu;
@@ -339,10 +196,10 @@ Result<MovedSamples> move_some(const Probe& probe, std::span<const uint32_t> tex
     for (size_t k = begin; k < end; ++k) {
       const Found before = found[edge[k]];
       atlas::Texel& texel = moved[k] = map.texels[edge[k]];
-      if (const auto place = probe.open_place(texel, before != Found::enclosed)) {
+      if (const auto place = open_place_of_grid(probe, texel, before != Found::enclosed)) {
         texel.sample = *place, is_moved[k] = 1;
       } else if (before == Found::enclosed) {
-        if (const auto other = probe.open_place(texel, charts))
+        if (const auto other = open_place_of_chart(probe, texel, charts))
           move_to(probe.atlas, *other, texel), is_moved[k] = 1;
       }
     }
@@ -391,7 +248,7 @@ Result<MovedSamples> move_samples_out_of_solids(const scene::Scene& scene,
                                                 Team* team) {
   std::vector<uint32_t> all(map.texels.size());
   std::iota(all.begin(), all.end(), 0);
-  return move_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map, team,
+  return move_some({{scene, atlas, tracer, scene::world_bounds(scene).diagonal()}}, all, map, team,
                    progress);
 }
 
@@ -400,7 +257,7 @@ Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene, const 
                                                std::span<const Box3> boxes,
                                                std::span<const uint32_t> near_back_faces,
                                                atlas::TexelMap& map, Progress& progress) {
-  const Probe probe{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
+  const Probe probe{{scene, atlas, tracer, scene::world_bounds(scene).diagonal()}};
   const std::vector<float> reaches = reaches_to(probe, boxes);
   std::vector<uint8_t> look(map.texels.size());
   for (const uint32_t i : near_back_faces) look[i] = 1;

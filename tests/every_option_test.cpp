@@ -115,6 +115,7 @@ Options values_of(const Inputs& in) {
       {"--plan", ""},
       {"--plane", "0.5"},
       {"--probes", "0.8"},
+      {"--processes-per-node", "2"},
       {"--quality", "draft"},
       {"--quiet", ""},
       {"--ranking", "nearness"},

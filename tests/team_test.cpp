@@ -87,7 +87,7 @@ bool BakesOfATeam::kill_rank(int rank) const {
 }
 
 const std::string kKinds[] = {
-    scene_file("cornell-box.glb") + " --resolution 96 --samples 64 --quality final",
+    scene_file("cornell-box.glb") + " --resolution 96 --samples 64",
     scene_file("office.glb") + " --resolution 96 --max-error 0.02 --error-measure rms",
     scene_file("foliage.glb") + " --resolution 64 --samples 64 --layers per-light"};
 

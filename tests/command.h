@@ -46,6 +46,13 @@ inline std::set<std::string> files_in(const std::filesystem::path& folder) {
     names.insert(entry.path().filename().string());
   return names;
 }
+/// Names and bytes of all files but bake.json, which has times.
+inline std::string results_in(const std::filesystem::path& folder) {
+  std::string out;
+  for (const std::string& name : files_in(folder))
+    if (name != "bake.json") out += name + slurp(folder / name);
+  return out;
+}
 inline const std::set<std::string> kBakeFiles{"lightmap.exr", "baked.glb", "preview.png",
                                               "bake.json"};
 

@@ -15,14 +15,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Names and bytes of all files but bake.json, which has times.
-std::string results_in(const fs::path& folder) {
-  std::string out;
-  for (const std::string& name : files_in(folder))
-    if (name != "bake.json") out += name + slurp(folder / name);
-  return out;
-}
-
 class BakesInParts : public ::testing::Test {
  protected:
   std::string part(int number, int of, const std::string& more) const {

@@ -17,20 +17,12 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// mpirun as root, with more processes than cores. Open MPI keeps memory at its end.
-std::string mpirun(int processes, const std::string& more = "") {
+std::string mpirun(int processes) {
   return fmt::format(
       "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
       "OMPI_MCA_rmaps_base_oversubscribe=1 ASAN_OPTIONS=detect_leaks=0 "
-      "timeout 200 mpirun {} -n {}",
-      more, processes);
-}
-
-/// Names and bytes of all files but bake.json, which has times.
-std::string results_in(const fs::path& folder) {
-  std::string out;
-  for (const std::string& name : files_in(folder))
-    if (name != "bake.json") out += name + slurp(folder / name);
-  return out;
+      "timeout 200 mpirun -n {}",
+      processes);
 }
 
 class BakesOfATeam : public ::testing::Test {

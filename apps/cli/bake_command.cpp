@@ -100,14 +100,7 @@ void register_bake(CLI::App& app, Action& action) {
   add_common(*bake, options->common);
   bake->callback([options, scene, settings, &action] {
     if (scene->count() == 0 && settings->count() == 0) throw CLI::RequiredError("SCENE");
-    action = [options] {
-      return run_together(options->common, options->processes_per_node,
-                          [&](const Common& common, Team* team) {
-                            BakeOptions own = *options;
-                            own.common = common;
-                            return run_bake(own, team);
-                          });
-    };
+    action = [options] { return run_together(*options, run_bake); };
   });
 }
 

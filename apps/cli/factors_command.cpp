@@ -134,16 +134,8 @@ void register_factors(CLI::App& app, Action& action) {
   add_import(*factors, options->reading);
   add_common(*factors, options->common);
   add_processes_per_node(*factors, options->processes_per_node);
-  factors->callback([options, &action] {
-    action = [options] {
-      return run_together(options->common, options->processes_per_node,
-                          [&](const Common& common, Team* team) {
-                            FactorOptions own = *options;
-                            own.common = common;
-                            return run_factors(own, team);
-                          });
-    };
-  });
+  factors->callback(
+      [options, &action] { action = [options] { return run_together(*options, run_factors); }; });
 }
 
 }  // namespace luxel::cli

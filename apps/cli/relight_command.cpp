@@ -119,12 +119,7 @@ int run_relight(const RelightOptions& options) {
     return report(
         Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out here"},
         options.common);
-  return run_together(options.common, options.processes_per_node,
-                      [&](const Common& common, Team* team) {
-                        RelightOptions own = options;
-                        own.common = common;
-                        return run_making(own, team);
-                      });
+  return run_together(options, run_making);
 }
 
 void add_making(CLI::App& relight, RelightOptions& options) {

@@ -17,4 +17,16 @@ void add_processes_per_node(CLI::App& command, int& processes_per_node);
 int run_together(const Common& common, int processes_per_node,
                  const std::function<int(const Common& common, Team* team)>& run);
 
+/// The command's options have `common` and `processes_per_node`; run(options, team) gets them with
+/// the `common` above.
+template <class Options, class Run>
+int run_together(const Options& options, const Run& run) {
+  return run_together(options.common, options.processes_per_node,
+                      [&](const Common& common, Team* team) {
+                        Options own = options;
+                        own.common = common;
+                        return run(own, team);
+                      });
+}
+
 }  // namespace luxel::cli

@@ -27,7 +27,7 @@ struct KeptEntries {
   uint64_t offset = 0;
 };
 
-/// Which tiles stay in memory where not all fit.
+/// Tiles that stay in memory where not all fit.
 enum class TilesInMemory : uint8_t {
   first_numbers,
   first_come  ///< for processes that have some of the tiles each, and do not know which

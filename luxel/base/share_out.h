@@ -24,11 +24,12 @@ inline namespace base {
 Result<std::vector<uint32_t>> share_out(Team* team, size_t count, Progress& progress,
                                         const std::function<void(size_t piece)>& work);
 
-/// Does the same, one piece after the other at each member: pieces that use all threads themselves.
+/// share_out() one piece after the other at each member: for pieces that use all threads
+/// themselves.
 Result<std::vector<uint32_t>> share_out_in_turn(Team* team, size_t count, Progress& progress,
                                                 const std::function<void(size_t piece)>& work);
 
-/// Does the same for pieces whose member is known: calls work(piece) for each of `own`.
+/// share_out() of pieces whose member is known: calls work(piece) for each of `own`.
 Status do_own(Team* team, std::span<const uint32_t> own, Progress& progress,
               const std::function<void(size_t piece)>& work);
 
@@ -73,7 +74,7 @@ Status share_ranges(Team* team, size_t count, size_t grain, Progress& progress,
                   progress);
 }
 
-/// The same for lists of any length: work(begin, end) returns one for its range. Returns them all,
+/// share_ranges() of lists of any length: work(begin, end) returns one. Returns them all,
 /// one after the other in the order of ranges.
 template <class T>
 Result<std::vector<T>> share_lists(

@@ -98,7 +98,7 @@ class MpiTeam final : public Team {
       has_failed_ = true;  // the others are stopped, too, or will be when this process has ended
       return;
     }
-    // Nobody begins another piece.
+    // The counter is far beyond all pieces from here on: no member begins another one.
     const Clock::time_point start = Clock::now();
     is_last_ = [start] { return seconds_since(start) > kLastWait; };
     const Request no_more{.stage = stage_, .count = kNoMore};
@@ -211,7 +211,7 @@ class MpiTeam final : public Team {
     return out;
   }
 
-  /// The same; errors, besides: a member has given up.
+  /// headers(); errors, besides: a member has given up.
   Result<std::vector<int64_t>> gather_headers(int64_t own, Progress& progress) {
     if (has_failed_) return fail(ErrorCode::cancelled, "another process has given up");
     LUXEL_TRY(std::vector<int64_t> out, headers(own, progress));

@@ -22,6 +22,7 @@ UvTriangle uv_triangle(const std::array<DVec2, 3>& corners);
 struct Span {
   int begin = 0, end = 0;
   bool empty() const { return begin >= end; }
+  friend bool operator==(Span, Span) = default;
 };
 
 /// Rows with touched texels.

@@ -19,27 +19,28 @@ double grid_unit(int resolution) {
   return std::ldexp(1.0, int(std::bit_width(unsigned(resolution))) - 23);
 }
 
-/// What could be placed at one density: corners and masks per chart and direction.
+/// What could be placed at one density.
 struct Attempt {
-  std::vector<std::vector<Corners>> corners;
-  std::vector<Directions> masks;
+  std::vector<std::vector<Corners>> corners;  ///< per chart and direction
+  Pieces pieces;
 };
 
 Attempt make_attempt(const std::vector<TurnedChart>& charts, double density, const PageRoom& room,
                      int atlas_side) {
   Attempt a;
   a.corners.resize(charts.size());
-  a.masks.resize(charts.size());
+  std::vector<std::vector<Mask>> masks(charts.size());
   parallel_for(charts.size(), 32, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c)
       for (const FlatChart& chart : charts[c]) {
         // Only upright is a chart shortened to fit the square.
         const bool fits = std::max(chart.size.x, chart.size.y) * density < room.side - 1;
-        if (!a.masks[c].empty() && !fits) continue;
+        if (!masks[c].empty() && !fits) continue;
         a.corners[c].push_back(texel_corners(chart, density, room.side, atlas_side));
-        a.masks[c].push_back(all_turns(make_mask(a.corners[c].back())));
+        masks[c].push_back(make_mask(a.corners[c].back()));
       }
   });
+  a.pieces = make_pieces(std::move(masks));
   return a;
 }
 
@@ -55,7 +56,8 @@ Layout place_charts(Attempt attempt, const Packing& packing, const Arrangement& 
       const ChartPosition place = packing.places[c];
       const Page& page = layout.pages[place.page];
       const DVec2 corner{double(page.x + place.x), double(page.y + place.y)};
-      const Mask& mask = attempt.masks[c][size_t(place.direction)].front();
+      const Pieces& pieces = attempt.pieces;
+      const Mask& mask = pieces.masks[pieces.charts[c][size_t(place.direction)].mask.front()];
       double width = mask.width, height = mask.height;
       for (int turn = 0; turn < place.turns; ++turn) {
         for (auto& t : layout.texels[c])
@@ -69,9 +71,9 @@ Layout place_charts(Attempt attempt, const Packing& packing, const Arrangement& 
   return layout;
 }
 
-uint64_t mask_texels(const std::vector<Directions>& masks) {
+uint64_t mask_texels(const Pieces& pieces) {
   uint64_t n = 0;
-  for (const Directions& m : masks) n += m.front().front().texels;
+  for (size_t c = 0; c < pieces.charts.size(); ++c) n += pieces.upright(c).texels;
   return n;
 }
 
@@ -79,19 +81,19 @@ constexpr size_t kFewCharts = 2048;  ///< with which packing is quick, and a mat
 
 /// Shares the pages out among the instances in their order, by the texels they need: most
 /// instances then lie on one page, and neighbours in the file on the same.
-std::vector<uint32_t> wished_pages(const std::vector<Directions>& masks, const PageRoom& room) {
+std::vector<uint32_t> wished_pages(const Pieces& pieces, const PageRoom& room) {
   std::vector<double> weight;
   double total = 0;
-  for (const Directions& d : masks) {
-    const Mask& m = d.front().front();
+  for (size_t c = 0; c < pieces.charts.size(); ++c) {
+    const Mask& m = pieces.upright(c);
     weight.push_back(double(m.texels) + room.gutter * double(m.width + m.height));
     total += weight.back();
   }
-  std::vector<uint32_t> order(masks.size());
+  std::vector<uint32_t> order(weight.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return room.instance[a] < room.instance[b]; });
-  std::vector<uint32_t> wished(masks.size());
+  std::vector<uint32_t> wished(weight.size());
   double before = 0;
   for (const uint32_t c : order) {
     const double share = (before + 0.5 * weight[c]) / total;
@@ -102,16 +104,16 @@ std::vector<uint32_t> wished_pages(const std::vector<Directions>& masks, const P
 }
 
 /// With few charts it is luck which order packs denser: when one nearly fits, the other may.
-Packing pack_in_either_order(const std::vector<Directions>& masks, const PageRoom& room,
-                             const Progress& progress) {
+Packing pack_in_either_order(const Pieces& pieces, const PageRoom& room, const Progress& progress) {
   constexpr double kNearly = 0.85;
   PackPages pages{uint32_t(room.count), {}};
-  if (room.count > 1) pages.wished = wished_pages(masks, room);
+  if (room.count > 1) pages.wished = wished_pages(pieces, room);
   const auto pack = [&](Order order) {
-    return pack_masks(masks, room.side, room.gutter, order, progress, pages);
+    return pack_pieces(pieces, room.side, room.gutter, order, progress, pages);
   };
   Packing packing = pack(Order::longest_side_first);
-  if (packing.placed == 1 || packing.placed < kNearly || masks.size() > kFewCharts) return packing;
+  if (packing.placed == 1 || packing.placed < kNearly || pieces.charts.size() > kFewCharts)
+    return packing;
   Packing other = pack(Order::largest_outline_first);
   return other.placed > packing.placed ? other : packing;
 }
@@ -175,10 +177,10 @@ Result<Layout> layout_in_squares(const std::vector<FlatChart>& charts, const Pag
   for (int round = 0; round < 60; ++round) {
     LUXEL_TRY_STATUS(stopped(progress));
     Attempt attempt = make_attempt(turned, density, room, atlas_side);
-    const double fill = double(mask_texels(attempt.masks)) / texels_of(room);
+    const double fill = double(mask_texels(attempt.pieces)) / texels_of(room);
     Packing packing;
     if (fill <= 1)
-      packing = pack_in_either_order(attempt.masks, room, progress);
+      packing = pack_in_either_order(attempt.pieces, room, progress);
     else
       packing.placed = 0.9 / fill;
     double next;
@@ -218,8 +220,8 @@ Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double te
     if (area > double(n) * n || (n < most && longest * texels_per_metre > n)) continue;
     room.side = n;
     Attempt attempt = make_attempt(turned, texels_per_metre, room, std::max(n, room.atlas_side));
-    if (mask_texels(attempt.masks) > uint64_t(n) * uint64_t(n)) continue;
-    const Packing packing = pack_in_either_order(attempt.masks, room, progress);
+    if (mask_texels(attempt.pieces) > uint64_t(n) * uint64_t(n)) continue;
+    const Packing packing = pack_in_either_order(attempt.pieces, room, progress);
     if (packing.placed == 1)
       return place_charts(std::move(attempt), packing, arranged(room), texels_per_metre);
   }
@@ -240,10 +242,10 @@ Result<Layout> layout_on_fewest_pages(const std::vector<FlatChart>& charts, doub
     // As fine as the largest atlas allows: how large this one gets is not known yet.
     const Attempt attempt =
         make_attempt(directions_of(charts), texels_per_metre, room, kMaxMapSide);
-    fewest = std::max(1.0, std::ceil(double(mask_texels(attempt.masks)) / page));
+    fewest = std::max(1.0, std::ceil(double(mask_texels(attempt.pieces)) / page));
     for (room.count = int(std::min(fewest, most + 1.0)); room.count <= most; ++room.count) {
       LUXEL_TRY_STATUS(stopped(progress));
-      const Packing packing = pack_in_either_order(attempt.masks, room, progress);
+      const Packing packing = pack_in_either_order(attempt.pieces, room, progress);
       if (packing.placed == 1)
         return place_charts(attempt, packing, arranged(room), texels_per_metre);
     }

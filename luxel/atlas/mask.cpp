@@ -1,86 +1,103 @@
-#include <algorithm>
+#include "luxel/atlas/mask.h"
 
-#include "luxel/atlas/pack.h"
+#include <algorithm>
 
 namespace luxel::atlas {
 namespace {
 
-/// Sorts runs and joins those that touch.
-void join_runs(std::vector<Span>& runs) {
-  std::sort(runs.begin(), runs.end(), [](Span a, Span b) { return a.begin < b.begin; });
+/// Sorts runs and joins those that touch; returns how many are left.
+size_t join_runs(std::span<Span> runs) {
+  const auto before = [](Span a, Span b) { return a.begin < b.begin; };
+  if (!std::is_sorted(runs.begin(), runs.end(), before))
+    std::sort(runs.begin(), runs.end(), before);
   size_t kept = 0;
   for (size_t i = 0; i < runs.size(); ++i)
     if (kept > 0 && runs[i].begin <= runs[kept - 1].end)
       runs[kept - 1].end = std::max(runs[kept - 1].end, runs[i].end);
     else
       runs[kept++] = runs[i];
-  runs.resize(kept);
+  return kept;
 }
 
-void measure(Mask& mask) {
-  mask.width = 0;
-  mask.texels = 0;
-  for (const auto& row : mask.rows)
-    for (const Span run : row) {
-      mask.width = std::max(mask.width, run.end);
-      mask.texels += uint64_t(run.end - run.begin);
-    }
-  mask.height = int(mask.rows.size());
+/// Joins the runs of each row, and counts their texels.
+void finish(Mask& mask) {
+  uint32_t kept = 0, begin = 0;
+  for (int j = 0; j < mask.height; ++j) {
+    const uint32_t end = mask.first_run[size_t(j) + 1];
+    Span* row = mask.runs.data() + begin;
+    const size_t count = join_runs({row, end - begin});
+    std::copy(row, row + count, mask.runs.data() + kept);
+    mask.first_run[size_t(j)] = kept;
+    kept += uint32_t(count);
+    begin = end;
+  }
+  mask.first_run[size_t(mask.height)] = kept;
+  mask.runs.resize(kept);
+  for (const Span run : mask.runs) mask.texels += uint64_t(run.end - run.begin);
 }
 
 }  // namespace
 
-Mask make_mask(const std::vector<std::array<DVec2, 3>>& texels) {
-  Mask mask;
-  for (const auto& corners : texels) {
-    const UvTriangle t = uv_triangle(corners);
-    const Span rows = touched_rows(t);
-    if (size_t(rows.end) > mask.rows.size()) mask.rows.resize(size_t(rows.end));
-    for (int j = rows.begin; j < rows.end; ++j) {
-      const Span run = touched_texels(t, j);
-      if (run.empty()) continue;
-      auto& row = mask.rows[size_t(j)];
-      // Neighbouring triangles come one after the other: most runs extend the last one.
-      if (!row.empty() && run.begin <= row.back().end && run.begin >= row.back().begin)
-        row.back().end = std::max(row.back().end, run.end);
-      else
-        row.push_back(run);
-    }
-  }
-  for (auto& row : mask.rows) join_runs(row);
-  measure(mask);
+Mask mask_of(int width, int height, std::span<const RowRun> runs) {
+  Mask mask{width, height, {}, {}, 0};
+  // Counted per row, each run has a place of its own.
+  mask.first_run.resize(size_t(height) + 1);
+  for (const RowRun& run : runs) ++mask.first_run[size_t(run.row)];
+  uint32_t end = 0;
+  for (uint32_t& first : mask.first_run) first = end += first;
+  mask.runs.resize(runs.size());
+  for (size_t r = runs.size(); r-- > 0;)
+    mask.runs[--mask.first_run[size_t(runs[r].row)]] = runs[r].columns;
+  finish(mask);
   return mask;
 }
 
+Mask make_mask(const std::vector<std::array<DVec2, 3>>& texels) {
+  std::vector<RowRun> runs;
+  int width = 0, height = 0;
+  for (const auto& corners : texels) {
+    const UvTriangle t = uv_triangle(corners);
+    const Span rows = touched_rows(t);
+    height = std::max(height, rows.end);
+    for (int j = rows.begin; j < rows.end; ++j) {
+      const Span columns = touched_texels(t, j);
+      if (columns.empty()) continue;
+      width = std::max(width, columns.end);
+      runs.push_back({j, columns});
+    }
+  }
+  return mask_of(width, height, runs);
+}
+
 Mask turned(const Mask& mask) {
-  Mask t;
-  t.rows.resize(size_t(mask.width));
-  t.width = mask.height;
-  t.height = mask.width;
-  t.texels = mask.texels;
+  std::vector<RowRun> runs;
   // Only where a row differs from the one above does a column's run begin or end.
   std::vector<int> begin(size_t(mask.width), -1);
   std::vector<int> edges;
-  static const std::vector<Span> kNoRuns;
   for (int j = 0; j <= mask.height; ++j) {
-    const auto& above = j > 0 ? mask.rows[size_t(j - 1)] : kNoRuns;
-    const auto& here = j < mask.height ? mask.rows[size_t(j)] : kNoRuns;
     edges.clear();
-    for (const auto* runs : {&above, &here})
-      for (const Span run : *runs) edges.insert(edges.end(), {run.begin, run.end});
+    for (const int row : {j - 1, j})
+      if (row >= 0 && row < mask.height)
+        for (const Span run : mask.row(row)) edges.insert(edges.end(), {run.begin, run.end});
     std::sort(edges.begin(), edges.end());
     for (size_t e = 0; e + 1 < edges.size(); e += 2)
       for (int i = edges[e]; i < edges[e + 1]; ++i) {
         int& b = begin[size_t(i)];
-        if (b < 0) {
-          b = j;
-        } else {
-          t.rows[size_t(mask.width - 1 - i)].push_back({b, j});
-          b = -1;
-        }
+        if (b >= 0) runs.push_back({mask.width - 1 - i, {b, j}});
+        b = b < 0 ? j : -1;
       }
   }
-  return t;
+  return mask_of(mask.height, mask.width, runs);
+}
+
+Mask widened(const Mask& mask, int gutter) {
+  std::vector<RowRun> runs;
+  runs.reserve(mask.runs.size() * size_t(2 * gutter + 1));
+  for (int j = 0; j < mask.height; ++j)
+    for (const Span run : mask.row(j))
+      for (int down = 0; down <= 2 * gutter; ++down)
+        runs.push_back({j + down, {run.begin, run.end + 2 * gutter}});
+  return mask_of(mask.width + 2 * gutter, mask.height + 2 * gutter, runs);
 }
 
 }  // namespace luxel::atlas

@@ -67,18 +67,25 @@ int free_column(const BitRows& rows, const Shape& shape, int y, std::vector<uint
 }  // namespace
 
 Shape make_shape(const Mask& mask) {
-  std::vector<Shape::Run> by_row;
-  for (int j = 0; j < mask.height; ++j)
-    for (const Span run : mask.rows[size_t(j)]) by_row.push_back({j, run});
-  const auto length_of = [](const Shape::Run& r) { return r.columns.end - r.columns.begin; };
+  std::vector<RowRun> by_row;
+  double sum_of_rows = 0;
   int longest = 0;
-  for (const Shape::Run& run : by_row) longest = std::max(longest, length_of(run));
+  for (int j = 0; j < mask.height; ++j)
+    for (const Span run : mask.row(j)) {
+      const int length = run.end - run.begin;
+      by_row.push_back({j, run});
+      sum_of_rows += double(j) * length;
+      longest = std::max(longest, length);
+    }
+  Shape shape{
+      mask.width, mask.height, sum_of_rows / double(std::max<uint64_t>(1, mask.texels)), {}};
+  shape.runs.reserve(by_row.size());
   // Long runs fail soonest, and neighbouring rows are much alike: each run lies far from those
   // before it.
-  Shape shape{mask.width, mask.height, {}};
   for (const bool is_long : {true, false})
     for_each_spread(by_row.size(), [&](size_t r) {
-      if ((2 * length_of(by_row[r]) >= longest) == is_long) shape.runs.push_back(by_row[r]);
+      const Span run = by_row[r].columns;
+      if ((2 * (run.end - run.begin) >= longest) == is_long) shape.runs.push_back(by_row[r]);
     });
   return shape;
 }
@@ -149,18 +156,12 @@ void BitRows::add_shifted(const uint64_t* bits, int offset, std::vector<uint64_t
   for (size_t w = inside; w < words_; ++w) blocked[w] = kFull;
 }
 
-void Strip::take_with_gutter(const Mask& mask, ChartPosition place, int gutter) {
-  const int top = std::max(0, place.y - gutter);
-  const int bottom = std::min(side(), place.y + mask.height + gutter);
-  const Span changed{std::max(0, place.x - gutter),
-                     std::min(side(), place.x + mask.width + gutter)};
+void Strip::take(const Mask& mask, Place at) {
+  const int top = std::max(0, at.y), bottom = std::min(side(), at.y + mask.height);
+  const Span changed{std::max(0, at.x), std::min(side(), at.x + mask.width)};
   for (int y = top; y < bottom; ++y) {
-    const int first = std::max(0, y - place.y - gutter);
-    const int last = std::min(mask.height - 1, y - place.y + gutter);
-    for (int j = first; j <= last; ++j)
-      for (const Span run : mask.rows[size_t(j)])
-        taken_.set(y, {std::max(0, place.x + run.begin - gutter),
-                       std::min(side(), place.x + run.end + gutter)});
+    for (const Span run : mask.row(y - at.y))
+      taken_.set(y, {std::max(0, at.x + run.begin), std::min(side(), at.x + run.end)});
     taken_.refresh(y, changed);
   }
   // Bands that know of fewer texels only say no less often.
@@ -169,7 +170,7 @@ void Strip::take_with_gutter(const Mask& mask, ChartPosition place, int gutter) 
     BitRows::intersect(taken_, y, kBand, changed, bands_);
 }
 
-ChartPosition Strip::topmost(const Shape& shape, int first, int last) const {
+Place Strip::topmost(const Shape& shape, int first, int last) const {
   std::vector<uint64_t> blocked(blocked_words_);
   last = std::min(last, side() - shape.height);
   for (int y = first; y <= last;) {

@@ -7,18 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "luxel/atlas/pack.h"
+#include "luxel/atlas/mask.h"
 
 namespace luxel::atlas {
 
 /// A mask's runs in the order of testing: those first that fail soonest.
 struct Shape {
-  struct Run {
-    int row = 0;
-    Span columns;
-  };
   int width = 0, height = 0;
-  std::vector<Run> runs;
+  /// How far down it hangs on average: unlike its bottom, this sees that a shape whose bulk is
+  /// above leaves room for others beside its tip.
+  double mean_row = 0;
+  std::vector<RowRun> runs;
 };
 Shape make_shape(const Mask& mask);
 
@@ -83,17 +82,23 @@ class BitRows {
   std::vector<int> longest_clear_;  ///< per row, the longest run of clear bits
 };
 
+/// Where the upper left corner of a mask's rectangle lies.
+struct Place {
+  int x = 0, y = 0;
+};
+
 /// A square in which texels are taken and never given back.
 class Strip {
  public:
   explicit Strip(int side) : taken_(side), bands_(side), blocked_words_(taken_.words()) {}
 
   int side() const { return taken_.count(); }
-  /// Takes the mask's texels and all within `gutter` of them.
-  void take_with_gutter(const Mask& mask, ChartPosition place, int gutter);
+  /// Takes the texels of a mask with its upper left corner there, and no others: those outside of
+  /// the square are left out.
+  void take(const Mask& mask, Place at);
   /// The topmost place for a shape with its top between rows [first, last], the leftmost of these;
   /// y = -1: none.
-  ChartPosition topmost(const Shape& shape, int first, int last) const;
+  Place topmost(const Shape& shape, int first, int last) const;
 
  private:
   BitRows taken_;

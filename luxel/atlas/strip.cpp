@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <span>
+#include <tuple>
 
 namespace luxel::atlas {
 namespace {
 
 constexpr uint64_t kFull = ~uint64_t(0);
-/// Rows that a band stands for. They change how fast a free place is found, not which.
-constexpr int kBand = 8;
-/// Lower shapes are found as fast without bands, which cost time to keep.
-constexpr int kBandShape = 32;
+int length_of(Span columns) { return columns.end - columns.begin; }
 
 /// Visits the numbers below a count, each far from those just before it: in the order of their
 /// reversed bits.
@@ -25,25 +23,53 @@ void for_each_spread(size_t count, const Visit& visit) {
   }
 }
 
-/// How many bits the longest run of clear bits has.
-int longest_clear_run(std::span<const uint64_t> bits) {
-  int longest = 0, run = 0;  // `run`: those that end where a word begins
-  for (const uint64_t word : bits) {
-    if (word == 0) {
-      run += 64;
-      continue;
-    }
-    longest = std::max(longest, run + std::countr_zero(word));
-    run = std::countl_zero(word);
+/// The longest run of clear bits, the leftmost of equals.
+Span longest_clear_run(std::span<const uint64_t> bits) {
+  Span best;
+  int longest = 0, begin = 0;  // `begin`: of the clear bits before the word
+  const auto end_at = [&](int end) {
+    if (end - begin > longest) best = {begin, end}, longest = end - begin;
+  };
+  for (size_t w = 0; w < bits.size(); ++w) {
+    const uint64_t word = bits[w];
+    if (word == 0) continue;
+    const int at = int(64 * w);
+    end_at(at + std::countr_zero(word));
+    begin = at + 64 - std::countl_zero(word);
     // Whether a run within the word is longer.
     uint64_t begins = ~word;  // where at least `have` clear bits begin
     for (int have = 1; begins != 0 && have <= longest;) {
       const int step = std::min(have, longest + 1 - have);
       begins &= begins >> step, have += step;
     }
-    for (; begins != 0; begins &= begins >> 1) ++longest;
+    for (; begins != 0; begins &= begins >> 1) {
+      const int first = at + std::countr_zero(begins);
+      best = {first, first + ++longest};
+    }
   }
-  return std::max(longest, run);
+  end_at(int(64 * bits.size()));
+  return best;
+}
+
+/// The rows of the largest rectangle under a graph of lengths, and its length.
+std::pair<Span, int> largest_rectangle(const std::vector<int>& lengths) {
+  Span best_rows;
+  int best_length = 0;
+  struct Open {
+    int begin, length;
+  };
+  std::vector<Open> open;  // rectangles that may go on below, each longer than those before
+  for (int j = 0; j <= int(lengths.size()); ++j) {
+    const int length = j < int(lengths.size()) ? lengths[size_t(j)] : 0;
+    int begin = j;
+    for (; !open.empty() && open.back().length >= length; open.pop_back()) {
+      begin = open.back().begin;
+      if (int64_t(j - begin) * open.back().length > int64_t(length_of(best_rows)) * best_length)
+        best_rows = {begin, j}, best_length = open.back().length;
+    }
+    open.push_back({begin, length});
+  }
+  return {best_rows, best_length};
 }
 
 /// The leftmost free column for a shape with its top at row y, or -1.
@@ -51,7 +77,7 @@ int free_column(const BitRows& rows, const Shape& shape, int y, std::vector<uint
   // Long runs come first: one that is too full refuses the row before columns are looked at.
   constexpr size_t kQuick = 24;
   for (size_t r = 0; r < std::min(kQuick, shape.runs.size()); ++r)
-    if (rows.too_full(y + shape.runs[r].row, shape.runs[r].columns)) return -1;
+    if (rows.longest_clear(y + shape.runs[r].row) < length_of(shape.runs[r].columns)) return -1;
   // The first leaves few words of columns, of which each is tested until it is full.
   std::fill(blocked.begin(), blocked.end(), 0);
   if (!shape.runs.empty()) rows.block(y + shape.runs[0].row, shape.runs[0].columns, blocked);
@@ -67,25 +93,27 @@ int free_column(const BitRows& rows, const Shape& shape, int y, std::vector<uint
 }  // namespace
 
 Shape make_shape(const Mask& mask) {
+  Shape shape;
+  shape.width = mask.width, shape.height = mask.height;
   std::vector<RowRun> by_row;
+  std::vector<int> longest_of_row(size_t(mask.height));
   double sum_of_rows = 0;
-  int longest = 0;
   for (int j = 0; j < mask.height; ++j)
     for (const Span run : mask.row(j)) {
-      const int length = run.end - run.begin;
       by_row.push_back({j, run});
-      sum_of_rows += double(j) * length;
-      longest = std::max(longest, length);
+      sum_of_rows += double(j) * length_of(run);
+      longest_of_row[size_t(j)] = std::max(longest_of_row[size_t(j)], length_of(run));
     }
-  Shape shape{
-      mask.width, mask.height, sum_of_rows / double(std::max<uint64_t>(1, mask.texels)), {}};
-  shape.runs.reserve(by_row.size());
+  shape.mean_row = sum_of_rows / double(std::max<uint64_t>(1, mask.texels));
+  std::tie(shape.core_rows, shape.core_length) = largest_rectangle(longest_of_row);
+  int longest = 0;
+  for (const int length : longest_of_row) longest = std::max(longest, length);
   // Long runs fail soonest, and neighbouring rows are much alike: each run lies far from those
   // before it.
+  shape.runs.reserve(by_row.size());
   for (const bool is_long : {true, false})
     for_each_spread(by_row.size(), [&](size_t r) {
-      const Span run = by_row[r].columns;
-      if ((2 * (run.end - run.begin) >= longest) == is_long) shape.runs.push_back(by_row[r]);
+      if ((2 * length_of(by_row[r].columns) >= longest) == is_long) shape.runs.push_back(by_row[r]);
     });
   return shape;
 }
@@ -93,7 +121,8 @@ Shape make_shape(const Mask& mask) {
 BitRows::BitRows(int side) : words_((size_t(side) + 63) / 64), count_(side), levels_(1) {
   while (levels_ < 7 && (1 << levels_) <= side) ++levels_;
   bits_.assign(size_t(count_) * size_t(levels_) * words_, 0);
-  longest_clear_.resize(size_t(count_));
+  longest_clear_.assign(size_t(count_), side);
+  longest_clear_begin_.resize(size_t(count_));
   if (side % 64 != 0)
     for (int y = 0; y < count_; ++y) row(y, 0)[words_ - 1] = kFull << (side % 64);
   for (int y = 0; y < count_; ++y) refresh(y, {0, side});
@@ -109,15 +138,6 @@ void BitRows::set(int y, Span columns) {
   }
 }
 
-void BitRows::intersect(const BitRows& rows, int y, int row_count, Span changed, BitRows& all) {
-  const auto [first, last] = rows.words_of(changed);
-  uint64_t* bits = all.row(y, 0);
-  std::copy(rows.row(y, 0) + first, rows.row(y, 0) + last, bits + first);
-  for (int i = y + 1; i < std::min(y + row_count, rows.count_); ++i)
-    for (size_t w = first; w < last; ++w) bits[w] &= rows.row(i, 0)[w];
-  all.refresh(y, changed);
-}
-
 void BitRows::refresh(int y, Span changed) {
   // A level's bits look at no more than 63 columns to the right of their own.
   auto [first, last] = words_of(changed);
@@ -131,7 +151,11 @@ void BitRows::refresh(int y, Span changed) {
       bits[w] = below[w] | below[w] >> shift | right << (64 - shift);
     }
   }
-  longest_clear_[size_t(y)] = longest_clear_run({row(y, 0), words_});
+  int& length = longest_clear_[size_t(y)];
+  int& begin = longest_clear_begin_[size_t(y)];
+  if (changed.end <= begin || changed.begin >= begin + length) return;
+  const Span clear = longest_clear_run({row(y, 0), words_});
+  begin = clear.begin, length = length_of(clear);
 }
 
 void BitRows::block(int y, Span columns, std::vector<uint64_t>& blocked) const {
@@ -164,23 +188,19 @@ void Strip::take(const Mask& mask, Place at) {
       taken_.set(y, {std::max(0, at.x + run.begin), std::min(side(), at.x + run.end)});
     taken_.refresh(y, changed);
   }
-  // Bands that know of fewer texels only say no less often.
-  if (mask.height < kBandShape) return;
-  for (int y = std::max(0, top - kBand + 1); y < bottom; ++y)
-    BitRows::intersect(taken_, y, kBand, changed, bands_);
 }
 
 Place Strip::topmost(const Shape& shape, int first, int last) const {
-  std::vector<uint64_t> blocked(blocked_words_);
+  std::vector<uint64_t> blocked(taken_.words());
   last = std::min(last, side() - shape.height);
-  for (int y = first; y <= last;) {
-    const int band_end = std::min(y + kBand, last + 1);
-    if (shape.height >= kBandShape && free_column(bands_, shape, y, blocked) < 0) {
-      y = band_end;
-      continue;
-    }
-    for (; y < band_end; ++y)
-      if (const int x = free_column(taken_, shape, y, blocked); x >= 0) return {x, y};
+  int row = first;  // those of the core above are not too full
+  for (int y = first; y <= last; ++y) {
+    // A row that is too full for the core refuses all places at which the core meets it.
+    for (row = std::max(row, y + shape.core_rows.begin); row < y + shape.core_rows.end && y <= last;
+         ++row)
+      if (taken_.longest_clear(row) < shape.core_length) y = row + 1 - shape.core_rows.begin;
+    if (y > last) break;
+    if (const int x = free_column(taken_, shape, y, blocked); x >= 0) return {x, y};
   }
   return {-1, -1};
 }

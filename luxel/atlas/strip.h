@@ -18,6 +18,10 @@ struct Shape {
   /// above leaves room for others beside its tip.
   double mean_row = 0;
   std::vector<RowRun> runs;
+  /// The largest rectangle among the lengths of the rows' longest runs: each of these rows has a
+  /// run of `core_length` columns or more.
+  Span core_rows;
+  int core_length = 0;
 };
 Shape make_shape(const Mask& mask);
 
@@ -31,15 +35,10 @@ class BitRows {
   size_t words() const { return words_; }
   int count() const { return count_; }
   void set(int y, Span columns);
-  /// Row y of `all` becomes the columns that are set in each of `rows` rows from y on, of which no
-  /// others than `changed` were set since the last time. Bits are set, never cleared.
-  static void intersect(const BitRows& rows, int y, int row_count, Span changed, BitRows& all);
   /// Builds the higher levels of a row of which no others than these columns were set.
   void refresh(int y, Span changed);
-  /// Whether the row has no run of clear bits as long as the columns: a quick way to say no.
-  bool too_full(int y, Span columns) const {
-    return longest_clear_[size_t(y)] < columns.end - columns.begin;
-  }
+  /// The length of the row's longest run of clear bits.
+  int longest_clear(int y) const { return longest_clear_[size_t(y)]; }
   /// Sets in `blocked` the offsets at which the columns meet set bits of row y.
   void block(int y, Span columns, std::vector<uint64_t>& blocked) const;
   /// The word of these offsets that begins at 64 * word.
@@ -57,7 +56,7 @@ class BitRows {
     return std::min(levels_ - 1, int(std::bit_width(unsigned(columns.end - columns.begin))) - 1);
   }
   size_t begin_of(int y, int level) const {
-    return (size_t(y) * size_t(levels_) + size_t(level)) * words_;
+    return (size_t(level) * size_t(count_) + size_t(y)) * words_;
   }
   uint64_t* row(int y, int level) { return &bits_[begin_of(y, level)]; }
   const uint64_t* row(int y, int level) const { return &bits_[begin_of(y, level)]; }
@@ -79,7 +78,8 @@ class BitRows {
   size_t words_;
   int count_, levels_;
   std::vector<uint64_t> bits_;
-  std::vector<int> longest_clear_;  ///< per row, the longest run of clear bits
+  std::vector<int> longest_clear_;        ///< per row
+  std::vector<int> longest_clear_begin_;  ///< per row, where one of these runs begins
 };
 
 /// Where the upper left corner of a mask's rectangle lies.
@@ -90,7 +90,7 @@ struct Place {
 /// A square in which texels are taken and never given back.
 class Strip {
  public:
-  explicit Strip(int side) : taken_(side), bands_(side), blocked_words_(taken_.words()) {}
+  explicit Strip(int side) : taken_(side) {}
 
   int side() const { return taken_.count(); }
   /// Takes the texels of a mask with its upper left corner there, and no others: those outside of
@@ -102,10 +102,6 @@ class Strip {
 
  private:
   BitRows taken_;
-  /// Row y: what is taken in all of the kBand rows from y on. Where a shape has no room on these,
-  /// it has none with its top in any of the rows: most rows need no test of their own.
-  BitRows bands_;
-  size_t blocked_words_;
 };
 
 }  // namespace luxel::atlas

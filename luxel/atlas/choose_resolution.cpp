@@ -18,7 +18,7 @@ constexpr double kFilled = 0.9;
 /// The area of charts that may be narrower than others: what is in them is hardly seen.
 constexpr double kNarrowArea = 0.02;
 
-/// Length of a chart in texels: slivers are shortened as texel_corners() does.
+/// Length of a chart in texels: slivers are shortened as fit_charts.cpp does.
 double length_in_texels(const ChartSize& c, double density) {
   const double length = c.length * density, across = c.width * density;
   return std::min(length, std::max(length * std::min(1.0, 4 * across), 3.0));

@@ -68,8 +68,8 @@ double flat_area(const std::vector<FlatChart>& charts) {
 }
 
 std::vector<TurnedChart> directions_of(const std::vector<FlatChart>& charts) {
-  std::vector<TurnedChart> turned;
-  for (const FlatChart& chart : charts) turned.push_back({chart});
+  std::vector<TurnedChart> turned(charts.size());
+  for (size_t c = 0; c < charts.size(); ++c) turned[c].push_back(charts[c]);
   const std::vector<uint32_t> blobs = blobs_to_turn(charts);
   parallel_for(blobs.size(), 1, [&](size_t b, size_t) {
     const uint32_t c = blobs[b];

@@ -21,39 +21,76 @@ double grid_unit(int resolution) {
 
 /// What could be placed at one density.
 struct Attempt {
-  std::vector<std::vector<Corners>> corners;  ///< per chart and direction
+  double density = 0;
+  int page_side = 0, atlas_side = 0;
   Pieces pieces;
 };
 
-Attempt make_attempt(const std::vector<TurnedChart>& charts, double density, const PageRoom& room,
-                     int atlas_side) {
-  Attempt a;
-  a.corners.resize(charts.size());
-  std::vector<std::vector<Mask>> masks(charts.size());
-  parallel_for(charts.size(), 32, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c)
-      for (const FlatChart& chart : charts[c]) {
-        // Only upright is a chart shortened to fit the square.
-        const bool fits = std::max(chart.size.x, chart.size.y) * density < room.side - 1;
-        if (!masks[c].empty() && !fits) continue;
-        a.corners[c].push_back(texel_corners(chart, density, room.side, atlas_side));
-        masks[c].push_back(make_mask(a.corners[c].back()));
-      }
-  });
-  a.pieces = make_pieces(std::move(masks));
-  return a;
+/// Only as it is laid first is a chart shortened to fit the square.
+bool may_lie(const TurnedChart& chart, size_t direction, const Attempt& attempt) {
+  const DVec2 size = chart[direction].size;
+  return direction == 0 || std::max(size.x, size.y) * attempt.density < attempt.page_side - 1;
 }
 
-Layout place_charts(Attempt attempt, const Packing& packing, const Arrangement& pages,
-                    double density) {
-  Layout layout{pages.side, density, {}, {}, pages.pages, {}};
+/// Corners of a chart in texels: scaled, slivers shortened to fit a page, on the fixed-point grid
+/// of an atlas.
+void lay_in_texels(const FlatChart& chart, const Attempt& attempt, Corners& texels) {
+  const double unit = grid_unit(attempt.atlas_side), density = attempt.density;
+  const double width = chart.size.x * density, height = chart.size.y * density;
+  // A sliver would take far more texels than its area deserves: one texel in every row it crosses
+  // and the gutter beside it. Below a quarter texel of width its length shrinks with the width.
+  const auto shortened = [&](double side, double across) {
+    const double fair = side * std::min(1.0, 4 * across);
+    const double wanted = std::min(side, std::max(fair, 3.0));
+    return std::min(wanted, attempt.page_side - 0.01) / side;
+  };
+  const double sx = width > 0 ? shortened(width, height) * density : density;
+  const double sy = height > 0 ? shortened(height, width) * density : density;
+  texels.resize(chart.corners.size());
+  for (size_t t = 0; t < texels.size(); ++t)
+    for (size_t k = 0; k < 3; ++k) {
+      const DVec2 p = chart.corners[t][k];
+      texels[t][k] = {std::round(p.x * sx / unit) * unit, std::round(p.y * sy / unit) * unit};
+    }
+}
+
+Attempt make_attempt(const std::vector<TurnedChart>& charts, double density, const PageRoom& room,
+                     int atlas_side) {
+  Attempt attempt{density, room.side, atlas_side, {}};
+  std::vector<std::vector<Mask>> masks(charts.size());
+  parallel_for(charts.size(), 32, [&](size_t begin, size_t end) {
+    Corners texels;
+    for (size_t c = begin; c < end; ++c)
+      for (size_t d = 0; d < charts[c].size(); ++d) {
+        if (!may_lie(charts[c], d, attempt)) continue;
+        lay_in_texels(charts[c][d], attempt, texels);
+        masks[c].push_back(make_mask(texels));
+      }
+  });
+  attempt.pieces = make_pieces(std::move(masks));
+  return attempt;
+}
+
+/// The chart in the direction of that number among those in which it may lie.
+const FlatChart& laid_chart(const TurnedChart& chart, int number, const Attempt& attempt) {
+  size_t d = 0;
+  for (; number > 0; --number) do
+      ++d;
+    while (!may_lie(chart, d, attempt));
+  return chart[d];
+}
+
+Layout place_charts(const std::vector<TurnedChart>& charts, const Attempt& attempt,
+                    const Packing& packing, const Arrangement& pages) {
+  Layout layout{pages.side, attempt.density, {}, {}, pages.pages, {}};
   for (const ChartPosition& place : packing.places) layout.page.push_back(place.page);
-  for (size_t c = 0; c < attempt.corners.size(); ++c)
-    layout.local.push_back(std::move(attempt.corners[c][size_t(packing.places[c].direction)]));
-  layout.texels = layout.local;
+  layout.local.resize(charts.size());
+  layout.texels.resize(charts.size());
   parallel_for(layout.texels.size(), 64, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
       const ChartPosition place = packing.places[c];
+      lay_in_texels(laid_chart(charts[c], place.direction, attempt), attempt, layout.local[c]);
+      layout.texels[c] = layout.local[c];
       const Page& page = layout.pages[place.page];
       const DVec2 corner{double(page.x + place.x), double(page.y + place.y)};
       const Pieces& pieces = attempt.pieces;
@@ -136,24 +173,6 @@ double most_density(const std::vector<FlatChart>& charts, const PageRoom& room) 
 
 }  // namespace
 
-Corners texel_corners(const FlatChart& chart, double density, int page_side, int atlas_side) {
-  const double unit = grid_unit(atlas_side);
-  const double width = chart.size.x * density, height = chart.size.y * density;
-  // A sliver would take far more texels than its area deserves: one texel in every row it crosses
-  // and the gutter beside it. Below a quarter texel of width its length shrinks with the width.
-  const auto shortened = [&](double side, double across) {
-    const double fair = side * std::min(1.0, 4 * across);
-    const double wanted = std::min(side, std::max(fair, 3.0));
-    return std::min(wanted, page_side - 0.01) / side;
-  };
-  const double sx = width > 0 ? shortened(width, height) * density : density;
-  const double sy = height > 0 ? shortened(height, width) * density : density;
-  Corners texels = chart.corners;
-  for (auto& t : texels)
-    for (DVec2& p : t) p = {std::round(p.x * sx / unit) * unit, std::round(p.y * sy / unit) * unit};
-  return texels;
-}
-
 bool holds_charts(const PageRoom& room, size_t charts) {
   const size_t side = size_t(room.side + room.gutter) / size_t(1 + room.gutter);
   return size_t(room.count) * side * side >= charts;
@@ -173,7 +192,8 @@ Result<Layout> layout_in_squares(const std::vector<FlatChart>& charts, const Pag
   const double most = most_density(charts, room);
   const double side = room.side * std::sqrt(double(room.count));  // of a square with all texels
   double density = std::min(most, first_guess > 0 ? first_guess : 0.85 * side / side_m);
-  Layout best;
+  Attempt best;
+  Packing best_packing;
   for (int round = 0; round < 60; ++round) {
     LUXEL_TRY_STATUS(stopped(progress));
     Attempt attempt = make_attempt(turned, density, room, atlas_side);
@@ -186,7 +206,7 @@ Result<Layout> layout_in_squares(const std::vector<FlatChart>& charts, const Pag
     double next;
     if (packing.placed == 1) {
       low = density;
-      best = place_charts(std::move(attempt), packing, pages, density);
+      best = std::move(attempt), best_packing = packing;
       if ((first_guess > 0 && round == 0) || density >= most) break;
       // Gutters do not grow with the density, but voids do: seven tenths of the way seldom fails.
       const double rows = double(room.count) * room.side;
@@ -204,7 +224,7 @@ Result<Layout> layout_in_squares(const std::vector<FlatChart>& charts, const Pag
     density = next;
   }
   LUXEL_CHECK(low > 0);
-  return best;
+  return place_charts(turned, best, best_packing, pages);
 }
 
 Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double texels_per_metre,
@@ -219,11 +239,11 @@ Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double te
     for (const FlatChart& c : charts) longest = std::max({longest, c.size.x, c.size.y});
     if (area > double(n) * n || (n < most && longest * texels_per_metre > n)) continue;
     room.side = n;
-    Attempt attempt = make_attempt(turned, texels_per_metre, room, std::max(n, room.atlas_side));
+    const Attempt attempt =
+        make_attempt(turned, texels_per_metre, room, std::max(n, room.atlas_side));
     if (mask_texels(attempt.pieces) > uint64_t(n) * uint64_t(n)) continue;
     const Packing packing = pack_in_either_order(attempt.pieces, room, progress);
-    if (packing.placed == 1)
-      return place_charts(std::move(attempt), packing, arranged(room), texels_per_metre);
+    if (packing.placed == 1) return place_charts(turned, attempt, packing, arranged(room));
   }
   LUXEL_TRY_STATUS(stopped(progress));
   return fail(
@@ -240,14 +260,13 @@ Result<Layout> layout_on_fewest_pages(const std::vector<FlatChart>& charts, doub
   double fewest = std::ceil(flat_area(charts) * texels_per_metre * texels_per_metre / page);
   if (fewest <= most) {
     // As fine as the largest atlas allows: how large this one gets is not known yet.
-    const Attempt attempt =
-        make_attempt(directions_of(charts), texels_per_metre, room, kMaxMapSide);
+    const std::vector<TurnedChart> turned = directions_of(charts);
+    const Attempt attempt = make_attempt(turned, texels_per_metre, room, kMaxMapSide);
     fewest = std::max(1.0, std::ceil(double(mask_texels(attempt.pieces)) / page));
     for (room.count = int(std::min(fewest, most + 1.0)); room.count <= most; ++room.count) {
       LUXEL_TRY_STATUS(stopped(progress));
       const Packing packing = pack_in_either_order(attempt.pieces, room, progress);
-      if (packing.placed == 1)
-        return place_charts(attempt, packing, arranged(room), texels_per_metre);
+      if (packing.placed == 1) return place_charts(turned, attempt, packing, arranged(room));
     }
   }
   LUXEL_TRY_STATUS(stopped(progress));

@@ -33,11 +33,6 @@ struct PageRoom {
   std::vector<uint32_t> instance{};  ///< per chart; with several pages, those of one keep together
 };
 
-/// Corners of a chart in texels: scaled, slivers shortened to fit a page, on the fixed-point grid
-/// of an atlas.
-std::vector<std::array<DVec2, 3>> texel_corners(const FlatChart& chart, double texels_per_metre,
-                                                int page_side, int atlas_side);
-
 /// Whether the squares have room for as many charts when each shrinks to a single texel.
 bool holds_charts(const PageRoom& room, size_t charts);
 

@@ -54,6 +54,7 @@ Mask mask_of(int width, int height, std::span<const RowRun> runs) {
 
 Mask make_mask(const std::vector<std::array<DVec2, 3>>& texels) {
   std::vector<RowRun> runs;
+  runs.reserve(64);
   int width = 0, height = 0;
   for (const auto& corners : texels) {
     const UvTriangle t = uv_triangle(corners);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 
 namespace luxel::atlas {
@@ -14,9 +15,11 @@ namespace {
 /// texels they got. Replaces the guilty ones by their parts; false, and nothing done, when there
 /// are none.
 bool cut_overlaps(const Faces& faces, const Layout& layout, std::vector<FlatChart>& charts) {
-  std::vector<ChartFaces> away;
-  for (size_t c = 0; c < charts.size(); ++c)
-    away.push_back(overlapping_faces(faces, charts[c], layout.local[c]));
+  std::vector<ChartFaces> away(charts.size());
+  parallel_for(charts.size(), 16, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c)
+      away[c] = overlapping_faces(faces, charts[c], layout.local[c]);
+  });
   if (std::all_of(away.begin(), away.end(), [](const ChartFaces& a) { return a.empty(); }))
     return false;
   std::vector<FlatChart> kept;

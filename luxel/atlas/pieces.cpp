@@ -68,22 +68,25 @@ std::vector<Turns> add_turns(Known& known) {
 }  // namespace
 
 Pieces make_pieces(std::vector<std::vector<Mask>> charts) {
-  std::vector<std::vector<uint64_t>> digests(charts.size());
-  parallel_for(charts.size(), 64, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c)
-      for (const Mask& mask : charts[c]) digests[c].push_back(mask_digest(mask));
+  std::vector<Mask*> masks;
+  for (std::vector<Mask>& directions : charts)
+    for (Mask& mask : directions) masks.push_back(&mask);
+  std::vector<uint64_t> digests(masks.size());
+  parallel_for(masks.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t m = begin; m < end; ++m) digests[m] = mask_digest(*masks[m]);
   });
   Known known;
-  std::vector<std::vector<uint32_t>> numbers(charts.size());
-  for (size_t c = 0; c < charts.size(); ++c)
-    for (size_t d = 0; d < charts[c].size(); ++d)
-      numbers[c].push_back(known.number_of(std::move(charts[c][d]), digests[c][d]));
+  std::vector<uint32_t> numbers(masks.size());
+  for (size_t m = 0; m < masks.size(); ++m)
+    numbers[m] = known.number_of(std::move(*masks[m]), digests[m]);
   const std::vector<Turns> turns = add_turns(known);
 
   Pieces pieces;
   pieces.charts.resize(charts.size());
-  for (size_t c = 0; c < charts.size(); ++c)
-    for (const uint32_t number : numbers[c]) pieces.charts[c].push_back(turns[number]);
+  for (size_t c = 0, m = 0; c < charts.size(); ++c) {
+    pieces.charts[c].reserve(charts[c].size());
+    for (size_t d = 0; d < charts[c].size(); ++d) pieces.charts[c].push_back(turns[numbers[m++]]);
+  }
   pieces.masks = std::move(known.masks);
   pieces.shapes.resize(pieces.masks.size());
   parallel_for(pieces.masks.size(), 16, [&](size_t begin, size_t end) {

@@ -73,19 +73,37 @@ DVec2 best_direction(const std::vector<DVec2>& hull) {
 
 double signed_area2(const std::array<DVec2, 3>& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
-/// Texel centres that faces of a chart already hold; a bit per texel of its rectangle.
+/// Texel centres that faces of a chart already hold; a bit per texel of its rectangle, rows of
+/// whole words.
 struct Occupancy {
   int width, height;
-  std::vector<bool> taken;
+  size_t words;  ///< of a row
+  std::vector<uint64_t> taken;
 
+  /// Whether a face holds a centre that is taken.
+  bool any_taken(const UvTriangle& t) const {
+    return visit_words(t, [&](size_t at, uint64_t bits) { return (taken[at] & bits) != 0; });
+  }
+  void take(const UvTriangle& t) {
+    visit_words(t, [&](size_t at, uint64_t bits) { return taken[at] |= bits, false; });
+  }
+
+ private:
+  /// Visits the words with centres that a face holds, and which bits they are, until `visit` says
+  /// true; whether it did.
   template <class Visit>
-  void for_each_centre(const UvTriangle& t, Visit&& visit) const {
+  bool visit_words(const UvTriangle& t, const Visit& visit) const {
     const Span rows = touched_rows(t);
     for (int j = std::max(0, rows.begin); j < std::min(height, rows.end); ++j) {
       const Span s = centre_texels(t, j, CentreRule::strictly_inside);
-      for (int i = std::max(0, s.begin); i < std::min(width, s.end); ++i)
-        visit(size_t(j) * size_t(width) + size_t(i));
+      const int end = std::min(width, s.end);
+      for (int i = std::max(0, s.begin), next; i < end; i = next) {
+        next = std::min(end, (i / 64 + 1) * 64);
+        const uint64_t bits = ~uint64_t(0) >> (64 - (next - i)) << (i % 64);
+        if (visit(size_t(j) * words + size_t(i) / 64, bits)) return true;
+      }
     }
+    return false;
   }
 };
 
@@ -93,8 +111,8 @@ Occupancy empty_occupancy(const Corners& texels) {
   double x = 1, y = 1;
   for (const auto& t : texels)
     for (const DVec2 p : t) x = std::max(x, p.x), y = std::max(y, p.y);
-  Occupancy o{int(x) + 1, int(y) + 1, {}};
-  o.taken.resize(size_t(o.width) * size_t(o.height));
+  Occupancy o{int(x) + 1, int(y) + 1, size_t(x) / 64 + 1, {}};
+  o.taken.resize(o.words * size_t(o.height));
   return o;
 }
 
@@ -121,13 +139,12 @@ std::vector<uint32_t> breadth_first(const Faces& faces, const ChartFaces& chart)
 
 bool overlaps_itself(const Corners& texels) {
   Occupancy o = empty_occupancy(texels);
-  bool twice = false;
-  for (const auto& t : texels)
-    o.for_each_centre(uv_triangle(t), [&](size_t at) {
-      twice = twice || o.taken[at];
-      o.taken[at] = true;
-    });
-  return twice;
+  for (const auto& corners : texels) {
+    const UvTriangle t = uv_triangle(corners);
+    if (o.any_taken(t)) return true;
+    o.take(t);
+  }
+  return false;
 }
 
 /// Halves a chart across its long side.
@@ -216,12 +233,10 @@ ChartFaces overlapping_faces(const Faces& faces, const FlatChart& chart, const C
   ChartFaces away;
   for (const uint32_t i : breadth_first(faces, chart.faces)) {
     const UvTriangle t = uv_triangle(texels[i]);
-    bool twice = false;
-    o.for_each_centre(t, [&](size_t at) { twice = twice || o.taken[at]; });
-    if (twice)
+    if (o.any_taken(t))
       away.push_back(chart.faces[i]);
     else
-      o.for_each_centre(t, [&](size_t at) { o.taken[at] = true; });
+      o.take(t);
   }
   std::sort(away.begin(), away.end());
   return away;

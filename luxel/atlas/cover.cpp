@@ -21,16 +21,33 @@ double high_x(const UvTriangle& t) {
   return std::max({t.corner[0].x, t.corner[1].x, t.corner[2].x});
 }
 
-/// Separating axes of a triangle and an open square: x, y and the three edge normals. Exact.
-bool touches(const UvTriangle& t, int i, int j) {
-  if (!(low_x(t) < i + 1 && high_x(t) > i && low_y(t) < j + 1 && high_y(t) > j)) return false;
-  for (int k = 0; k < 3; ++k) {
-    const DVec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
-    const DVec2 innermost{b.y > a.y ? double(i) : i + 1.0, b.x > a.x ? j + 1.0 : double(j)};
-    if (side_of(a, b, innermost) <= 0) return false;
+/// Separating axes of a triangle and the open squares of a row: x, y and the three edge normals.
+/// Exact.
+class TouchedInRow {
+ public:
+  TouchedInRow(const UvTriangle& t, int row)
+      : t_(t),
+        row_(row),
+        low_x_(low_x(t)),
+        high_x_(high_x(t)),
+        meets_row_(low_y(t) < row + 1 && high_y(t) > row) {}
+
+  bool operator()(int i) const {
+    if (!(meets_row_ && low_x_ < i + 1 && high_x_ > i)) return false;
+    for (int k = 0; k < 3; ++k) {
+      const DVec2 a = t_.corner[k], b = t_.corner[(k + 1) % 3];
+      const DVec2 innermost{b.y > a.y ? double(i) : i + 1.0, b.x > a.x ? row_ + 1.0 : double(row_)};
+      if (side_of(a, b, innermost) <= 0) return false;
+    }
+    return true;
   }
-  return true;
-}
+
+ private:
+  const UvTriangle& t_;
+  int row_;
+  double low_x_, high_x_;
+  bool meets_row_;
+};
 
 /// The x-range of a triangle within y0 <= y <= y1, up to rounding; begin > end when empty.
 std::pair<double, double> x_range(const UvTriangle& t, double y0, double y1) {
@@ -86,7 +103,7 @@ Span touched_texels(const UvTriangle& t, int row) {
   if (!(low <= high)) return {};
   if (t.area2 == 0) return {int(std::floor(low)), int(std::floor(high)) + 1};
   const Span loose{int(std::floor(low - kSlack)), int(std::floor(high + kSlack)) + 1};
-  return trimmed(loose, [&](int i) { return touches(t, i, row); });
+  return trimmed(loose, TouchedInRow(t, row));
 }
 
 Span centre_texels(const UvTriangle& t, int row, CentreRule rule) {

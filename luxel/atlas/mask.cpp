@@ -5,18 +5,25 @@
 namespace luxel::atlas {
 namespace {
 
+/// Joins each run with the one before where they touch; returns how many are left.
+size_t join_neighbours(std::span<Span> runs) {
+  size_t kept = 0;
+  for (const Span run : runs)
+    if (kept > 0 && run.begin <= runs[kept - 1].end && run.end >= runs[kept - 1].begin)
+      runs[kept - 1] = {std::min(runs[kept - 1].begin, run.begin),
+                        std::max(runs[kept - 1].end, run.end)};
+    else
+      runs[kept++] = run;
+  return kept;
+}
+
 /// Sorts runs and joins those that touch; returns how many are left.
 size_t join_runs(std::span<Span> runs) {
-  const auto before = [](Span a, Span b) { return a.begin < b.begin; };
-  if (!std::is_sorted(runs.begin(), runs.end(), before))
-    std::sort(runs.begin(), runs.end(), before);
-  size_t kept = 0;
-  for (size_t i = 0; i < runs.size(); ++i)
-    if (kept > 0 && runs[i].begin <= runs[kept - 1].end)
-      runs[kept - 1].end = std::max(runs[kept - 1].end, runs[i].end);
-    else
-      runs[kept++] = runs[i];
-  return kept;
+  // Neighbouring triangles come one after the other: that leaves few to sort.
+  runs = runs.first(join_neighbours(runs));
+  if (runs.size() <= 1) return runs.size();
+  std::sort(runs.begin(), runs.end(), [](Span a, Span b) { return a.begin < b.begin; });
+  return join_neighbours(runs);
 }
 
 /// Joins the runs of each row, and counts their texels.
@@ -76,10 +83,12 @@ Mask turned(const Mask& mask) {
   std::vector<int> begin(size_t(mask.width), -1);
   std::vector<int> edges;
   for (int j = 0; j <= mask.height; ++j) {
+    const std::span<const Span> above = j > 0 ? mask.row(j - 1) : std::span<const Span>();
+    const std::span<const Span> here = j < mask.height ? mask.row(j) : std::span<const Span>();
+    if (std::ranges::equal(above, here)) continue;
     edges.clear();
-    for (const int row : {j - 1, j})
-      if (row >= 0 && row < mask.height)
-        for (const Span run : mask.row(row)) edges.insert(edges.end(), {run.begin, run.end});
+    for (const auto& runs_of_row : {above, here})
+      for (const Span run : runs_of_row) edges.insert(edges.end(), {run.begin, run.end});
     std::sort(edges.begin(), edges.end());
     for (size_t e = 0; e + 1 < edges.size(); e += 2)
       for (int i = edges[e]; i < edges[e + 1]; ++i) {

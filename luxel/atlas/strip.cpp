@@ -15,11 +15,14 @@ int length_of(Span columns) { return columns.end - columns.begin; }
 /// reversed bits.
 template <class Visit>
 void for_each_spread(size_t count, const Visit& visit) {
-  const int bits = int(std::bit_width(count));
-  for (size_t k = 0; k < size_t(1) << bits; ++k) {
-    size_t turned = 0;
-    for (int i = 0; i < bits; ++i) turned |= (k >> i & 1) << (bits - 1 - i);
-    if (turned < count) visit(turned);
+  const size_t most = size_t(1) << std::bit_width(count);
+  for (size_t number = 0;;) {
+    if (number < count) visit(number);
+    // Counts on with reversed bits: a carry runs to the lower ones.
+    size_t bit = most / 2;
+    for (; number & bit; bit /= 2) number ^= bit;
+    if (bit == 0) return;
+    number |= bit;
   }
 }
 
@@ -111,10 +114,12 @@ Shape make_shape(const Mask& mask) {
   // Long runs fail soonest, and neighbouring rows are much alike: each run lies far from those
   // before it.
   shape.runs.reserve(by_row.size());
-  for (const bool is_long : {true, false})
-    for_each_spread(by_row.size(), [&](size_t r) {
-      if ((2 * length_of(by_row[r].columns) >= longest) == is_long) shape.runs.push_back(by_row[r]);
-    });
+  std::vector<RowRun> short_runs;
+  for_each_spread(by_row.size(), [&](size_t r) {
+    const bool is_long = 2 * length_of(by_row[r].columns) >= longest;
+    (is_long ? shape.runs : short_runs).push_back(by_row[r]);
+  });
+  shape.runs.insert(shape.runs.end(), short_runs.begin(), short_runs.end());
   return shape;
 }
 

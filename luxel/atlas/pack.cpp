@@ -154,8 +154,10 @@ class WideMasks {
 
 Packing pack_pieces(const Pieces& pieces, int side, int gutter, Order order,
                     const Progress& progress, const PackPages& pages) {
-  const Sheet empty{Strip(side), {}, std::vector<int>(pieces.masks.size(), 0)};
-  std::vector<Sheet> sheets(pages.count, empty);
+  std::vector<Sheet> sheets;
+  sheets.reserve(pages.count);  // a large one takes time to copy
+  while (sheets.size() < pages.count)
+    sheets.push_back({Strip(side), {}, std::vector<int>(pieces.masks.size(), 0)});
   WideMasks wide(pieces, gutter);
   Packing packing;
   packing.places.resize(pieces.charts.size());

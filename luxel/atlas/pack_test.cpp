@@ -37,6 +37,16 @@ Mask random_mask(int width, int height, RandomStream& random) {
   return mask_of(width, height, cells);
 }
 
+/// The same with one run in each row, of any length and anywhere.
+Mask ragged_mask(int width, int height, RandomStream& random) {
+  Cells cells{{0, 0}, {width - 1, height - 1}};
+  for (int j = 0; j < height; ++j) {
+    const int a = int(random.next() * float(width)), b = int(random.next() * float(width));
+    for (int i = std::min(a, b); i <= std::max(a, b); ++i) cells.emplace(i, j);
+  }
+  return mask_of(width, height, cells);
+}
+
 TEST(Pack, AQuarterTurnMovesEveryTexelAsItSays) {
   RandomStream random(1);
   const Mask mask = random_mask(9, 5, random);
@@ -98,6 +108,7 @@ void take_by_hand(const Mask& mask, ChartPosition at, int gutter, Grid& taken) {
 /// A square, and the largest shapes to pack into it.
 struct PackCase {
   int side, width, height;
+  Mask (*make_mask)(int width, int height, RandomStream& random);
 };
 
 /// Packs until nothing finds room; every place must be that of the plain search.
@@ -110,7 +121,7 @@ void pack_both_ways(const PackCase& c, uint64_t seed, int& placed) {
   for (int k = 0; k < 20; ++k) {
     const int width = 3 + int(random.next() * float(c.width)),
               height = 3 + int(random.next() * float(c.height));
-    const Mask mask = random_mask(width, height, random);
+    const Mask mask = c.make_mask(width, height, random);
     const ChartPosition expected = topmost_by_trying(taken, mask);
     const Place found = strip.topmost(make_shape(mask), 0, side);
     ASSERT_EQ(found.x, expected.x) << "seed " << seed << ", " << width << " x " << height;
@@ -123,15 +134,21 @@ void pack_both_ways(const PackCase& c, uint64_t seed, int& placed) {
 }
 
 TEST(Pack, FindsThePlaceThatTryingEveryTexelFinds) {
-  // Two words, the second one partly outside. Shapes on both sides of the height from which on
-  // bands of rows are tested first.
+  // Two words, the second one partly outside.
   int placed = 0;
-  for (uint64_t seed = 1; seed <= 40; ++seed) pack_both_ways({100, 30, 45}, seed, placed);
+  for (uint64_t seed = 1; seed <= 40; ++seed)
+    pack_both_ways({100, 30, 45, random_mask}, seed, placed);
   EXPECT_GE(placed, 400);
   // Four words, and runs of more than two.
   placed = 0;
-  for (uint64_t seed = 1; seed <= 10; ++seed) pack_both_ways({200, 160, 20}, seed, placed);
+  for (uint64_t seed = 1; seed <= 10; ++seed)
+    pack_both_ways({200, 160, 20, random_mask}, seed, placed);
   EXPECT_GE(placed, 100);
+  // Shapes whose rows differ, and that reach into each other.
+  placed = 0;
+  for (uint64_t seed = 1; seed <= 40; ++seed)
+    pack_both_ways({100, 60, 30, ragged_mask}, seed, placed);
+  EXPECT_GE(placed, 400);
 }
 
 /// A page of the plain search, with what was placed on it: no larger mask is looked for above.

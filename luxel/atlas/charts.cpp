@@ -1,8 +1,9 @@
 #include "luxel/atlas/charts.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <numeric>
-#include <queue>
 #include <tuple>
 #include <unordered_map>
 
@@ -15,9 +16,13 @@ namespace {
 constexpr double kFlatAngle = 0.01;    ///< faces this close to a patch's first face are coplanar
 constexpr double kCreaseAngle = 0.75;  ///< light changes at a sharper edge: no chart crosses it
 
+constexpr size_t kManyNormals = 64;      ///< of fewer, none is left out
+constexpr double kSurelyInFront = 0.01;  ///< cosine of a little less than a right angle
+
 /// A size or cost in steps of one percent, so that symmetric candidates compare equal whatever the
-/// unit of length did to their last digits. What is as good as nothing is one step, too.
-double rounded(double share) { return std::floor(std::log2(std::max(share, 1e-14)) * 64 + 0.37); }
+/// unit of length did to their last digits. What is as good as nothing is one step, too, and so is
+/// what is no number.
+double rounded(double share) { return std::floor(std::log2(std::max(1e-14, share)) * 64 + 0.37); }
 
 /// Coplanar neighbours share a number. Large faces come first: their normals are the best known.
 std::vector<uint32_t> flat_patches(const Faces& faces, uint32_t& count) {
@@ -60,16 +65,7 @@ struct Border {
   double soft = 0, hard = 0;  ///< metres, below and above the crease angle
 };
 
-struct Cluster {
-  DVec3 normal_sum;  ///< area-weighted
-  double area = 0, perimeter = 0;
-  std::vector<DVec3> normals;   ///< of its patches
-  std::vector<Border> borders;  ///< sorted by `other`
-  std::vector<uint32_t> patches;
-  uint32_t version = 0;
-  bool alive = true;
-};
-
+/// A merge of two clusters, `a` the one with the lower number, as they were in these versions.
 struct Candidate {
   double cost;
   uint32_t a, b, version_a, version_b;
@@ -78,25 +74,113 @@ struct Candidate {
   }
 };
 
+/// A candidate and the cluster that has it in its heap.
+struct Proposal {
+  Candidate candidate;
+  uint32_t owner;
+  friend bool operator>(const Proposal& p, const Proposal& q) { return p.candidate > q.candidate; }
+};
+
+/// Proposals, the cheapest first. Costs come in steps: each has a heap of its own, which a
+/// processor's cache holds where one of all would not fit.
+class Proposals {
+ public:
+  bool empty() const { return by_cost_.empty(); }
+  void push(const Proposal& proposal) {
+    std::vector<Proposal>& heap = by_cost_[proposal.candidate.cost];
+    heap.push_back(proposal);
+    std::ranges::push_heap(heap, std::greater<>());
+  }
+  Proposal pop() {
+    const auto cheapest = by_cost_.begin();
+    std::vector<Proposal>& heap = cheapest->second;
+    std::ranges::pop_heap(heap, std::greater<>());
+    const Proposal out = heap.back();
+    heap.pop_back();
+    if (heap.empty()) by_cost_.erase(cheapest);
+    return out;
+  }
+
+ private:
+  std::map<double, std::vector<Proposal>> by_cost_;
+};
+
+struct Cluster {
+  DVec3 normal_sum;  ///< area-weighted
+  double area = 0, perimeter = 0;
+  std::vector<DVec3> normals;   ///< of its patches, those in the midst of others left out
+  std::vector<Border> borders;  ///< sorted by `other`
+  /// What it may merge with, found when it last changed: a heap with the cheapest on top.
+  std::vector<Candidate> candidates;
+  std::vector<uint32_t> patches;
+  size_t most_normals = kManyNormals;  ///< with more, some are left out
+};
+
+/// Leaves out normals that lie between others, as seen along the axis, from which all are less than
+/// a right angle away. Who is within an angle of some direction that is less than a right angle has
+/// all between them within it, too: the outermost normals speak for all. Of many, a few are left.
+void keep_outermost(std::vector<DVec3>& normals, DVec3 axis) {
+  // On the plane across the axis great circles are straight lines: the outermost normals are the
+  // corners of the convex hull, made by Andrew's monotone chains.
+  struct Point {
+    double x, y;
+    DVec3 normal;
+  };
+  const DVec3 across =
+      normalize(cross(axis, std::abs(axis.x) < 0.9 ? DVec3{1, 0, 0} : DVec3{0, 1, 0}));
+  const DVec3 third = cross(axis, across);
+  std::vector<Point> points;
+  for (const DVec3& n : normals) {
+    const double depth = dot(n, axis);
+    points.push_back({dot(n, across) / depth, dot(n, third) / depth, n});
+  }
+  std::ranges::sort(points, [](const Point& a, const Point& b) {
+    return std::tie(a.x, a.y) < std::tie(b.x, b.y);
+  });
+  // Surely right of the line from a to b, whatever rounding does: what is on it stays.
+  const auto is_inside = [](const Point& a, const Point& p, const Point& b) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 1e-12;
+  };
+  normals.clear();
+  for (const bool lower : {true, false}) {
+    std::vector<Point> chain;
+    for (const Point& p : points) {
+      while (chain.size() > 1 && is_inside(chain[chain.size() - 2], chain.back(), p))
+        chain.pop_back();
+      chain.push_back(p);
+    }
+    for (const Point& p : chain) normals.push_back(p.normal);
+    if (lower) std::ranges::reverse(points);
+  }
+}
+
 class Merger {
  public:
   Merger(const Faces& faces, const std::vector<uint32_t>& patch, uint32_t count, double max_angle)
-      : clusters_(count), cos_max_(std::cos(max_angle)) {
+      : clusters_(count), version_(count, 0), cos_max_(std::cos(max_angle)) {
     add_faces(faces, patch);
     add_borders(faces, patch);
     for (const Cluster& c : clusters_) total_area_ += c.area;
   }
 
   bool run(const Progress& progress) {
-    for (uint32_t c = 0; c < clusters_.size(); ++c)
+    for (uint32_t c = 0; c < clusters_.size(); ++c) {
       for (const Border& b : clusters_[c].borders)
         if (c < b.other) propose(c, b);
+      std::ranges::make_heap(clusters_[c].candidates, std::greater<>());
+      queue_cheapest(c);
+    }
     uint32_t steps = 0;
     while (!queue_.empty()) {
       if ((++steps & 1023u) == 0 && progress.cancelled()) return false;
-      const Candidate best = queue_.top();
-      queue_.pop();
-      if (fresh(best) && fits(best.a, best.b)) merge(best.a, best.b);
+      const auto [best, owner] = queue_.pop();
+      const uint32_t version = owner == best.a ? best.version_a : best.version_b;
+      if (!is_now(owner, version)) continue;  // with all that it had proposed
+      drop_cheapest(owner);
+      if (is_now(best.a, best.version_a) && is_now(best.b, best.version_b) && fits(best.a, best.b))
+        merge(best.a, best.b);
+      else
+        queue_cheapest(owner);
     }
     return true;
   }
@@ -145,9 +229,17 @@ class Merger {
     borders.resize(kept);
   }
 
-  bool fresh(const Candidate& c) const {
-    return clusters_[c.a].alive && clusters_[c.b].alive && clusters_[c.a].version == c.version_a &&
-           clusters_[c.b].version == c.version_b;
+  bool is_now(uint32_t cluster, uint32_t version) const { return version_[cluster] == version; }
+
+  /// The cheapest of what a cluster proposes waits for its turn among those of all clusters.
+  void queue_cheapest(uint32_t c) {
+    std::vector<Candidate>& own = clusters_[c].candidates;
+    if (!own.empty()) queue_.push({own.front(), c});
+  }
+  void drop_cheapest(uint32_t c) {
+    std::vector<Candidate>& own = clusters_[c].candidates;
+    std::ranges::pop_heap(own, std::greater<>());
+    own.pop_back();
   }
 
   /// Every patch of both stays within the largest angle of the common axis.
@@ -173,8 +265,8 @@ class Merger {
     const double shape = outline * outline / (16 * (p.area + q.area));
     const double cost = (lost + shape * std::min(p.area, q.area)) / total_area_;
     const uint32_t b = border.other;
-    queue_.push({rounded(cost), std::min(a, b), std::max(a, b), clusters_[std::min(a, b)].version,
-                 clusters_[std::max(a, b)].version});
+    clusters_[a].candidates.push_back({rounded(cost), std::min(a, b), std::max(a, b),
+                                       version_[std::min(a, b)], version_[std::max(a, b)]});
   }
 
   /// The smaller one goes into the larger one.
@@ -191,13 +283,20 @@ class Merger {
     p.normal_sum = p.normal_sum + q.normal_sum;
     p.area += q.area;
     p.normals.insert(p.normals.end(), q.normals.begin(), q.normals.end());
+    if (p.normals.size() > p.most_normals && cos_max_ > kSurelyInFront) {
+      keep_outermost(p.normals, normalize(p.normal_sum));
+      p.most_normals = std::max(kManyNormals, 2 * p.normals.size());
+    }
     p.patches.insert(p.patches.end(), q.patches.begin(), q.patches.end());
-    ++p.version;
+    ++version_[a];
+    version_[b] = kNone;
     for (const Border& x : q.borders)
       if (x.other != a) rename(clusters_[x.other].borders, b, a);
     q = Cluster{};
-    q.alive = false;
+    p.candidates.clear();
     for (const Border& x : p.borders) propose(a, x);
+    std::ranges::make_heap(p.candidates, std::greater<>());
+    queue_cheapest(a);
   }
 
   static void rename(std::vector<Border>& borders, uint32_t from, uint32_t to) {
@@ -207,7 +306,8 @@ class Merger {
   }
 
   std::vector<Cluster> clusters_;
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  std::vector<uint32_t> version_;  ///< of each cluster, how often it has grown; kNone: it is gone
+  Proposals queue_;  ///< of each cluster the cheapest; also of some that have changed since
   double cos_max_;
   double total_area_ = 0;
 };

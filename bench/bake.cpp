@@ -28,20 +28,6 @@ struct AtlasCase {
   bool twice = false;
 };
 
-/// Runs one bake in a process of its own. Returns its bake.json.
-Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
-  LUXEL_TRY(const ChildOutcome child, run_in_child([&] {
-              Progress progress;
-              const auto json = pipeline::bake(settings, progress);
-              return json ? json->dump() : nlohmann::json(json.error().message).dump();
-            }));
-  const auto json = nlohmann::json::parse(child.text, nullptr, false);
-  if (!json.is_object())
-    return fail(ErrorCode::bad_input, "the bake of {} failed: {}", settings.scene.string(),
-                child.text);
-  return json;
-}
-
 }  // namespace
 
 Result<Table> measure_atlas(const std::filesystem::path& shared, int threads) {

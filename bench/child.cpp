@@ -7,6 +7,8 @@
 
 #include <csignal>
 
+#include "luxel/pipeline/bake/bake.h"
+
 namespace luxel::bench {
 
 Result<ChildOutcome> run_in_child(const std::function<std::string()>& work) {
@@ -37,6 +39,19 @@ Result<ChildOutcome> run_in_child(const std::function<std::string()>& work) {
     return fail(ErrorCode::io, "a process that measures ended before its time");
   out.peak_resident_bytes = uint64_t(usage.ru_maxrss) * 1024;
   return out;
+}
+
+Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
+  LUXEL_TRY(const ChildOutcome child, run_in_child([&] {
+              Progress progress;
+              const auto json = pipeline::bake(settings, progress);
+              return json ? json->dump() : nlohmann::json(json.error().message).dump();
+            }));
+  const auto json = nlohmann::json::parse(child.text, nullptr, false);
+  if (!json.is_object())
+    return fail(ErrorCode::bad_input, "the bake of {} failed: {}", settings.scene.string(),
+                child.text);
+  return json;
 }
 
 }  // namespace luxel::bench

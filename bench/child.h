@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::bench {
 
@@ -16,5 +18,9 @@ struct ChildOutcome {
 /// The child begins with what this process holds, but with none of its threads: it comes before any
 /// parallel work. Errors: no process; it ended before its time.
 Result<ChildOutcome> run_in_child(const std::function<std::string()>& work);
+
+/// Runs one bake in a process of its own. Returns its bake.json. Errors: those of run_in_child()
+/// and of the bake.
+Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings);
 
 }  // namespace luxel::bench

@@ -115,7 +115,8 @@ void count_products(const Room& room, std::vector<Made>& all) {
 /// Times all codecs and the yardstick, in turn.
 void time_all(const Room& room, std::vector<Made>& all, CodecRuns& out) {
   const matrix::Patches& patches = room.patches();
-  const std::vector<Rgb>&rho = patches.elements.reflectance, &sent = room.trials.sent[0];
+  const std::span<const Rgb> rho = patches.elements.reflectance;
+  const std::vector<Rgb>& sent = room.trials.sent[0];
   const matrix::ColourMatrix colour = make_colour_factors(room.prepared.factors, rho);
   matrix::DenseScratch dense_scratch = matrix::make_dense_scratch(patches.size());
   std::vector<Rgb> e(patches.size());

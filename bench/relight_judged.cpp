@@ -92,8 +92,9 @@ Result<std::unique_ptr<Place>> make_place(scene::Scene scene, const JudgeSetting
 matrix::Target target_of(const transport::Elements& points) {
   matrix::Target out;
   out.kind = matrix::Target::Kind::vertices;
-  out.position = points.position;
-  out.normal = points.normal, out.geometric_normal = points.geometric_normal;
+  out.position = copied(points.position);
+  out.normal = copied(points.normal);
+  out.geometric_normal = copied(points.geometric_normal);
   return out;
 }
 

@@ -30,7 +30,7 @@ Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& trac
                 {.patches = {.count = count}, .factors = {.rays_per_patch = kRelightSizesRays}},
                 progress));
   const matrix::Patches& patches = prepared.patched.patches;
-  const std::vector<Rgb>& rho = patches.elements.reflectance;
+  const std::span<const Rgb> rho = patches.elements.reflectance;
   LUXEL_TRY(matrix::Hierarchical hierarchy,
             matrix::compress(
                 prepared.factors, prepared.patched.tree, patches.centroid, patches.area_m2,

@@ -26,7 +26,7 @@ constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRel
 struct BenchOptions {
   Common common;
   std::string name;
-  /// gallery, budget, rms: the stem of the only one; relight: its folder's name
+  /// gallery, budget, rms: the stem of the only one; relight: its folder's name; growth: a series
   std::string scene;
   bench::StatedParams stated;
   std::string shared;
@@ -179,7 +179,7 @@ bool takes_scene(const std::string& name) {
 
 int run_bench(const BenchOptions& options) {
   if (!options.scene.empty() && !takes_scene(options.name))
-    return report_usage("--scene belongs to `luxel bench` gallery, relight, budget and rms",
+    return report_usage("--scene belongs to `luxel bench` gallery, relight, budget, rms and growth",
                         options.common);
   const bool of_stated = options.stated.first_seed != 1 || !options.stated.only.empty();
   if (of_stated && options.name != kStated)
@@ -229,7 +229,8 @@ void register_bench(CLI::App& app, Action& action) {
       "--scene", options->scene,
       "gallery: this scene alone, by its file's stem; the rest of the page stays. "
       "relight: only the comparison with the path tracer in this scene, without files. "
-      "budget, rms: only the rows of this scene, by its file's stem");
+      "budget, rms: only the rows of this scene, by its file's stem. "
+      "growth: only one of the series texels, triangles, copies and large");
   bench
       ->add_option("--first-seed", options->stated.first_seed,
                    "stated: the first of the hundred scenes' seeds (default: 1)")

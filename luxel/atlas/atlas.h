@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "luxel/base/mapped_memory.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/scene/scene.h"
@@ -51,7 +52,7 @@ static_assert(sizeof(Texel) == 24);
 /// All texels that any triangle touches, in rows from the top, left to right.
 struct TexelMap {
   int resolution = 0;
-  std::vector<Texel> texels;
+  MappedVector<Texel> texels;
   std::vector<uint32_t> texel_at;  ///< resolution^2 entries: index into texels, or kNone
 };
 
@@ -93,10 +94,12 @@ struct AtlasStats {
 Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, Progress& progress);
 
 /// Clips every triangle against the texels it touches and gives each texel one owner: the triangle
-/// that holds its centre, else the one that covers most of it (ties: the lower number).
-TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas);
+/// that holds its centre, else the one that covers most of it (ties: the lower number). Texels lie
+/// in `memory` where there is one.
+TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas,
+                   std::shared_ptr<MappedMemory> memory = nullptr);
 /// The map of texels that lie on the atlas.
-TexelMap map_of(const Atlas& atlas, std::vector<Texel> texels);
+TexelMap map_of(const Atlas& atlas, MappedVector<Texel> texels);
 
 /// A place of the atlas in the coordinates of a triangle of it; negative ones where it has no area.
 inline Barycentric barycentric_in(const std::array<Vec2, 3>& corners, Vec2 p) {

@@ -146,7 +146,7 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
 
 }  // namespace
 
-TexelMap rasterise(const scene::Scene&, const Atlas& atlas) {
+TexelMap rasterise(const scene::Scene&, const Atlas& atlas, std::shared_ptr<MappedMemory> memory) {
   const std::vector<std::vector<uint32_t>> bins = bin_triangles(atlas);
   std::vector<std::vector<Texel>> bands(bins.size());
   parallel_for(bins.size(), 1, [&](size_t begin, size_t end) {
@@ -155,7 +155,7 @@ TexelMap rasterise(const scene::Scene&, const Atlas& atlas) {
       bands[b] = band_texels(atlas, find_owners(atlas, bins[b], rows), rows);
     }
   });
-  std::vector<Texel> texels;
+  MappedVector<Texel> texels(std::move(memory));
   size_t count = 0;
   for (const auto& band : bands) count += band.size();
   texels.reserve(count);
@@ -166,7 +166,7 @@ TexelMap rasterise(const scene::Scene&, const Atlas& atlas) {
   return map_of(atlas, std::move(texels));
 }
 
-TexelMap map_of(const Atlas& atlas, std::vector<Texel> texels) {
+TexelMap map_of(const Atlas& atlas, MappedVector<Texel> texels) {
   TexelMap map{atlas.resolution, std::move(texels), {}};
   map.texel_at.assign(size_t(atlas.resolution) * size_t(atlas.resolution), kNone);
   for (uint32_t t = 0; t < map.texels.size(); ++t) {

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 namespace luxel {
 
 /// The sum of the arrays' entry sizes [bytes]. In a struct of arrays, with one entry per element in
 /// each, these are the bytes per element: bytes_per_entry(&Elements::position, &Elements::normal).
-template <class Struct, class... Entry>
-constexpr uint64_t bytes_per_entry(std::vector<Entry> Struct::*...) {
-  return (uint64_t(sizeof(Entry)) + ...);
+template <class Struct, class... Array>
+constexpr uint64_t bytes_per_entry(Array Struct::*...) {
+  return (uint64_t(sizeof(typename Array::value_type)) + ...);
 }
 
 }  // namespace luxel

@@ -8,9 +8,9 @@ inline namespace base {
 
 /// Empties a vector and gives its memory back. `v = {}` does not: it assigns an empty list, and the
 /// capacity stays.
-template <class T>
-void free_memory(std::vector<T>& v) {
-  std::vector<T>().swap(v);
+template <class T, class Allocator>
+void free_memory(std::vector<T, Allocator>& v) {
+  std::vector<T, Allocator>().swap(v);
 }
 
 }  // namespace base

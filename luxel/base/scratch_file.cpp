@@ -1,6 +1,7 @@
 #include "luxel/base/scratch_file.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -52,6 +53,22 @@ Status ScratchFile::read(uint64_t offset, void* bytes, size_t count) const {
   if (error == 0) return {};
   return fail(ErrorCode::io, "cannot read temporary data back from {}: {}", folder_.string(),
               std::strerror(error));
+}
+
+Status ScratchFile::reserve(uint64_t bytes) const {
+  const int error = ::posix_fallocate(file_, 0, off_t(bytes));
+  if (error == 0) return {};
+  return fail(error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
+              "cannot make a temporary file of {}M in {}: {}; give more --max-memory or a folder "
+              "with more room",
+              (bytes >> 20) + 1, folder_.string(), std::strerror(error));
+}
+
+Result<void*> ScratchFile::map(uint64_t bytes) const {
+  void* const begin = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
+  if (begin != MAP_FAILED) return begin;
+  return fail(ErrorCode::out_of_memory, "cannot map a temporary file of {}M in {}: {}",
+              (bytes >> 20) + 1, folder_.string(), std::strerror(errno));
 }
 
 }  // namespace luxel

@@ -21,6 +21,11 @@ class ScratchFile {
   /// disk is full.
   Status write(uint64_t offset, const void* bytes, size_t count) const;
   Status read(uint64_t offset, void* bytes, size_t count) const;
+  /// Takes this much of the disk at once. Errors: it has not so much.
+  Status reserve(uint64_t bytes) const;
+  /// Addresses at which the first bytes of the file are read and written, until munmap(). Errors:
+  /// none are left.
+  Result<void*> map(uint64_t bytes) const;
 
  private:
   ScratchFile(std::filesystem::path folder, int file);

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "luxel/base/check.h"
+#include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
 #include "luxel/image/codec.h"
 
@@ -227,10 +228,15 @@ Result<std::vector<std::byte>> encode_exr(const Image& image) {
     std::vector<Part> made(parts);
     parallel_for(parts, 1, [&](size_t k, size_t) { made[k] = make_part(image, int(k)); });
     // Their blocks, one part's after the other's.
-    size_t table = header;
+    size_t table = header, bytes = file.size();
     for (const Part& part : made) {
       if (!part.failed.empty()) throw std::runtime_error(part.failed);
+      bytes += part.file.size() - header - size_t(part.blocks) * kOffsetBytes;
+    }
+    file.reserve(bytes);
+    for (Part& part : made) {
       append_blocks(part, header, table, file);
+      free_memory(part.file);  // of a large picture there is no room for all twice
     }
     return file;
   } catch (const std::exception& e) {

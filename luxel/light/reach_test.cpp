@@ -176,7 +176,7 @@ transport::Elements floor_elements() {
   transport::Elements out;
   for (int i = 0; i < 80 * 80; ++i)
     out.position.push_back({0.1f * float(i % 80) - 3.95f, 0, 0.1f * float(i / 80) - 3.95f});
-  out.normal = out.geometric_normal = std::vector<Vec3>(out.size(), {0, 1, 0});
+  out.normal = out.geometric_normal = MappedVector<Vec3>(out.size(), {0, 1, 0});
   out.reflectance.resize(out.size());
   return out;
 }

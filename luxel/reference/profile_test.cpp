@@ -44,8 +44,9 @@ TEST(Profiles, DirectLightIsThatOfTheSolvers) {
   const auto tracer = trace::RayTracer::build(scene);
   ASSERT_TRUE(tracer);
   transport::Elements elements;
-  elements.position = points.position;
-  elements.normal = elements.geometric_normal = points.normal;
+  elements.position.assign(points.position.begin(), points.position.end());
+  elements.normal.assign(points.normal.begin(), points.normal.end());
+  elements.geometric_normal = elements.normal;
   elements.reflectance.resize(points.size());
   Progress progress;
   const auto direct =

@@ -107,7 +107,7 @@ TEST(OpenSamples, MoveOutFromUnderABox) {
   Floor floor;
   floor.add_box({1.02f, 0, -1}, {3, 1, 3});  // texels of column 16 span 1 .. 1.0625
   const trace::RayTracer rays = floor.tracer();
-  const std::vector<atlas::Texel> before = floor.map.texels;
+  const MappedVector<atlas::Texel> before = floor.map.texels;
   const MovedSamples opened = floor.move_samples(rays);
   EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide));
   for (size_t i = 0; i < before.size(); ++i) {

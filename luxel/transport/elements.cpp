@@ -95,8 +95,8 @@ void drop_places(Elements& elements) {
 }
 
 Elements subset(const Elements& elements, std::span<const uint32_t> chosen) {
-  const auto pick = [&](const std::vector<Vec3>& all) {
-    std::vector<Vec3> out;
+  const auto pick = [&](const MappedVector<Vec3>& all) {
+    MappedVector<Vec3> out;
     if (all.empty()) return out;
     out.reserve(chosen.size());
     for (const uint32_t i : chosen) out.push_back(all[i]);
@@ -127,8 +127,10 @@ SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p
 
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                               const atlas::TexelMap& map) {
-  Elements e;
   const size_t n = map.texels.size();
+  const MappedAllocator<Vec3> where(map.texels.get_allocator());
+  Elements e{MappedVector<Vec3>(where), MappedVector<Vec3>(where), MappedVector<Vec3>(where),
+             MappedVector<Rgb>(where), MappedVector<Rgb>(where)};
   e.position.resize(n), e.normal.resize(n), e.geometric_normal.resize(n), e.reflectance.resize(n);
   const bool scatters = scene::scatters_light(scene);
   if (scatters) e.transmittance.resize(n);

@@ -9,6 +9,7 @@
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/bytes_per_entry.h"
+#include "luxel/base/mapped_memory.h"
 #include "luxel/base/vec.h"
 #include "luxel/scene/scene.h"
 
@@ -16,13 +17,13 @@ namespace luxel::transport {
 
 /// Structure of arrays, all of the same length.
 struct Elements {
-  std::vector<Vec3> position;          ///< on the surface (the smooth one), world [m]
-  std::vector<Vec3> normal;            ///< unit shading normal of the front side
-  std::vector<Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
-  std::vector<Rgb> reflectance;        ///< rho in [0, 0.99]
+  MappedVector<Vec3> position;          ///< on the surface (the smooth one), world [m]
+  MappedVector<Vec3> normal;            ///< unit shading normal of the front side
+  MappedVector<Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
+  MappedVector<Rgb> reflectance;        ///< rho in [0, 0.99]
   /// tau: what of the irradiance on the other side leaves this one. Empty where nothing scatters
   /// light through.
-  std::vector<Rgb> transmittance;
+  MappedVector<Rgb> transmittance;
 
   /// The number of elements, also after drop_places().
   size_t size() const { return std::max(position.size(), reflectance.size()); }
@@ -51,7 +52,7 @@ SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p
 /// over its triangle, the element lies on the bulge and its horizon is that of the shading normal:
 /// else facets would show at the border of light and shadow [Hanika21]. Reflectance is
 /// the mean over the part of the texel that its triangle covers, so that a fine texture is neither
-/// missed nor aliased.
+/// missed nor aliased. They lie where the texels of the map do.
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                               const atlas::TexelMap& map);
 

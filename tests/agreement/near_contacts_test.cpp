@@ -134,9 +134,9 @@ TEST_P(SlowNearContacts, TheRelighterDoesAsWell) {
   matrix::Target target{.kind = matrix::Target::Kind::texels,
                         .width = kResolution,
                         .height = kResolution,
-                        .position = texels.position,
-                        .normal = texels.normal,
-                        .geometric_normal = texels.geometric_normal,
+                        .position = copied(texels.position),
+                        .normal = copied(texels.normal),
+                        .geometric_normal = copied(texels.geometric_normal),
                         .transfer = {}};
   for (const atlas::Texel& t : room.p->map.texels)
     target.texel.push_back({uint16_t(t.x), uint16_t(t.y)});

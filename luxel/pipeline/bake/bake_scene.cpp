@@ -170,6 +170,11 @@ SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& 
   return out;
 }
 
+/// Frees what only denoising and callers look at.
+void drop_parts(TexelLight& light) {
+  free_memory(light.variance), free_memory(light.direct), free_memory(light.direct_variance);
+}
+
 /// The rest of bake_scene() for a bake that has its scene.
 Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const BakeObserver& watcher,
                    Bake& bake, Progress& progress) {
@@ -200,6 +205,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
     LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress, keepers.team));
   LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   if (keepers.cache) keepers.cache->solved();
+  if (keepers.only_for_files) drop_parts(bake.light);
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
   const std::string dark =
       settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();

@@ -29,8 +29,8 @@ Status check_same_scene(const LitBake& bake, const std::filesystem::path& scene,
 }
 
 /// Each place `times` times.
-std::vector<Vec3> repeated(std::span<const Vec3> places, size_t times) {
-  std::vector<Vec3> out;
+MappedVector<Vec3> repeated(std::span<const Vec3> places, size_t times) {
+  MappedVector<Vec3> out;
   out.reserve(places.size() * times);
   for (const Vec3& p : places) out.insert(out.end(), times, p);
   return out;

@@ -88,9 +88,9 @@ Result<Wanted> texels_of(scene::Scene& scene, const RelightSettings& s,
   out.target.width = out.target.height = uint32_t(atlas.resolution);
   for (const atlas::Texel& t : map.texels)
     out.target.texel.push_back({uint16_t(t.x), uint16_t(t.y)});
-  out.target.position = elements.position;
-  out.target.normal = elements.normal;
-  out.target.geometric_normal = elements.geometric_normal;
+  out.target.position = copied(elements.position);
+  out.target.normal = copied(elements.normal);
+  out.target.geometric_normal = copied(elements.geometric_normal);
   // The file's lightmap is black: light comes from the relighter.
   const std::vector<Rgb> dark(map.texels.size());
   LUXEL_TRY(out.glb, export_::baked_glb(scene, atlas, post::lightmap_from_texels(map, dark)));

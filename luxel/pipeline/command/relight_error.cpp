@@ -132,7 +132,7 @@ transport::Elements places_to_check(const scene::Scene& scene, uint64_t seed) {
 CheckedTarget with_places(matrix::Target target, const transport::Elements& places) {
   CheckedTarget out{std::move(target), 0};
   out.own = out.target.position.size();
-  const auto append = [](std::vector<Vec3>& to, const std::vector<Vec3>& more) {
+  const auto append = [](std::vector<Vec3>& to, std::span<const Vec3> more) {
     to.insert(to.end(), more.begin(), more.end());
   };
   append(out.target.position, places.position), append(out.target.normal, places.normal);

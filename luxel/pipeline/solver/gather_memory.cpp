@@ -52,7 +52,9 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
                       (stores.cache && stores.cache->found());
   const bool keeps_places =
       looks_at_places(settings) || shows || (stores.device && stores.device->is_optional);
-  const uint64_t given_back = keeps_places ? 0 : transport::kPlaceBytesPerElement * n;
+  // What lies in files was not counted, and need not be given back.
+  const bool in_files = files_of(in) != nullptr;
+  const uint64_t given_back = keeps_places || in_files ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;
   const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;
   const bool guides = settings.max_error > 0 &&
@@ -60,7 +62,8 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
                       layers == 0;
   const uint64_t guide = guides ? gather::kGuideBytesPerElement : 0;
   const uint64_t traced =
-      (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels + guide) * n;
+      (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels + guide) * n -
+      (in_files ? gather::kBroughtBytesPerElement * n : 0);
   const uint64_t bounced =
       traced +
       (gather::kBouncedBytesPerElement + (rounds ? gather::kGuessBytesPerElement : 0) +

@@ -1,5 +1,6 @@
 #include "luxel/pipeline/solver/memory.h"
 
+#include "luxel/base/mapped_memory.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/pipeline/solver/finishing_memory.h"
 
@@ -24,6 +25,10 @@ bool looks_at_places(const BakeSettings& settings) {
          !settings.shadow_mask.empty() || settings.occlusion_distance_m > 0;
 }
 
+const MappedMemory* files_of(const light::TexelScene& in) {
+  return in.map.texels.get_allocator().memory.get();
+}
+
 // Nearly all of what comes after solvers is counted as if it were there at once.
 uint64_t bytes_of_light(const light::TexelScene& in, const BakeSettings& settings) {
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution);
@@ -36,7 +41,13 @@ uint64_t bytes_of_light(const light::TexelScene& in, const BakeSettings& setting
 Result<uint64_t> memory_to_spare(const light::TexelScene& in, const BakeSettings& settings,
                                  uint64_t besides, uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
-  const uint64_t needed = resident_bytes() + besides;
+  uint64_t needed = besides;
+  if (const MappedMemory* const files = files_of(in)) {
+    // Pages that are being looked at need room, too.
+    files->let_go();
+    needed += settings.max_memory_bytes / kPartOfMappedPages;
+  }
+  needed += resident_bytes();
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {
     const uint64_t free = available_bytes() / 5 * 4;

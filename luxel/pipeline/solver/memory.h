@@ -12,6 +12,10 @@ inline constexpr uint64_t kMinHitBytes = 16u << 20;
 /// Whether anything that comes after rays looks at where the elements lie.
 bool looks_at_places(const BakeSettings& settings);
 
+/// The files in which texels and elements lie, of a bake that needs more memory than it may have;
+/// null: they are in memory.
+const MappedMemory* files_of(const light::TexelScene& in);
+
 /// What a solver that gives light per texel leaves, and what it and the steps after it take, of
 /// memory [bytes], besides what the process holds now and what the solver has of its own.
 uint64_t bytes_of_light(const light::TexelScene& in, const BakeSettings& settings);

@@ -6,6 +6,8 @@
 #include "luxel/atlas/cut_charts.h"
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
+#include "luxel/base/output_folder.h"
+#include "luxel/base/process_memory.h"
 #include "luxel/base/share_out.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/barriers.h"
@@ -23,10 +25,25 @@ atlas::AtlasParams params_of(const BakeSettings& settings) {
   return params;
 }
 
-Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::Scene& scene,
-                                 Progress& progress) {
+/// About what a bake takes at most for each texel of the square, hits aside.
+constexpr uint64_t kBytesOfTexel = 130;
+
+/// Where arrays of so many texels lie that are gone over in order: nowhere in particular, or in
+/// files where a bake would need more memory than it may have.
+std::shared_ptr<MappedMemory> memory_for(const BakeSettings& settings, int resolution) {
+  const uint64_t limit = settings.max_memory_bytes > 0
+                             ? settings.max_memory_bytes
+                             : resident_bytes() + available_bytes() / 5 * 4;
+  const uint64_t side = uint64_t(resolution);
+  if (resident_bytes() + kBytesOfTexel * side * side <= limit) return nullptr;
+  return std::make_shared<MappedMemory>(nearest_folder(settings.output),
+                                        limit - limit / kPartOfMappedPages);
+}
+
+Result<TexelLayout> lay_out_once(const BakeSettings& settings, const atlas::AtlasParams& params,
+                                 const scene::Scene& scene, Progress& progress) {
   LUXEL_TRY(atlas::Atlas atlas, atlas::make_atlas(scene, params, progress));
-  atlas::TexelMap map = atlas::rasterise(scene, atlas);
+  atlas::TexelMap map = atlas::rasterise(scene, atlas, memory_for(settings, atlas.resolution));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}, {}, {}};
@@ -35,8 +52,8 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
 /// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
 /// at another density, so that barriers lie between other texels than before: they are searched
 /// again, and what is parted in the end is counted.
-Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
-                       Progress& progress, Team* team) {
+Status cut_at_barriers(const BakeSettings& settings, const atlas::AtlasParams& params,
+                       scene::Scene& scene, TexelLayout& layout, Progress& progress, Team* team) {
   constexpr int kMostTimes = 2;
   atlas::AtlasParams grouped = params;
   uint32_t cuts = 0;
@@ -52,7 +69,7 @@ Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, Te
     scene = std::move(cut.scene);
     grouped.group = std::move(cut.group);
     layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
-    LUXEL_TRY(layout, lay_out_once(grouped, scene, progress));
+    LUXEL_TRY(layout, lay_out_once(settings, grouped, scene, progress));
   }
 }
 
@@ -110,9 +127,9 @@ void take_moved(transport::MovedSamples opened, TexelLayout& layout) {
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
                                    Progress& progress, Team* team) {
   const atlas::AtlasParams params = params_of(settings);
-  LUXEL_TRY(TexelLayout layout, lay_out_once(params, scene, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out_once(settings, params, scene, progress));
   if (settings.repair_leaks) {
-    LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress, team));
+    LUXEL_TRY_STATUS(cut_at_barriers(settings, params, scene, layout, progress, team));
     LUXEL_TRY(transport::MovedSamples opened,
               transport::move_samples_out_of_solids(scene, layout.atlas, layout.tracer, layout.map,
                                                     progress, team));
@@ -128,7 +145,8 @@ KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout) {
   out.meshes = scene.meshes;
   for (const scene::Instance& instance : scene.instances)
     out.mesh_of_instance.push_back(instance.mesh);
-  out.atlas = layout.atlas, out.texels = layout.map.texels;
+  out.atlas = layout.atlas;
+  out.texels.assign(layout.map.texels.begin(), layout.map.texels.end());
   out.stats = layout.stats, out.repair = layout.repair,
   out.near_back_faces = layout.near_back_faces;
   if (layout.wrong_in_uv1) out.wrong_in_uv1.push_back(*layout.wrong_in_uv1);
@@ -151,8 +169,9 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   const bool same_places = boxes.empty();
   // Samples that were moved out of solids begin at their own places again where things have moved.
   if (!same_places) free_memory(kept.texels);
-  atlas::TexelMap map = same_places ? atlas::map_of(kept.atlas, std::move(kept.texels))
-                                    : atlas::rasterise(scene, kept.atlas);
+  atlas::TexelMap map = same_places
+                            ? atlas::map_of(kept.atlas, {kept.texels.begin(), kept.texels.end()})
+                            : atlas::rasterise(scene, kept.atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   TexelLayout layout{std::move(kept.atlas),

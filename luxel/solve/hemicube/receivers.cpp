@@ -151,7 +151,7 @@ void average_reflectances(const scene::Scene& scene, const Mesh& mesh, Receivers
     for (size_t i = begin; i < end; ++i)
       reflectance[i] = mean_reflectance(scene, mesh.nodes[r.leaves[i]]);
   });
-  std::vector<Rgb>& out = r.elements.reflectance;
+  MappedVector<Rgb>& out = r.elements.reflectance;
   for (size_t i = 0; i < r.leaves.size(); ++i) {
     const Node& node = mesh.nodes[r.leaves[i]];
     const float area = area_m2(mesh, node);

@@ -58,7 +58,7 @@ Room sphere(size_t count) {
 Room cornell(size_t count) {
   const Cut cut(scene::cornell_box(), count);
   return {cut.reciprocal_factors(1024), cut.patched.tree, cut.patches().area_m2,
-          cut.patches().elements.reflectance, cut.patches().emission};
+          copied(cut.patches().elements.reflectance), cut.patches().emission};
 }
 
 TEST(CountBounces, IsTheSumOverReflections) {
@@ -118,7 +118,7 @@ TEST(AllBounces, FurnaceIsExact) {
 TEST(AllBounces, FurnaceBoxByItsRays) {
   const Cut cut(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}), 300);
   const Room room{cut.reciprocal_factors(512), cut.patched.tree, cut.patches().area_m2,
-                  cut.patches().elements.reflectance, cut.patches().emission};
+                  copied(cut.patches().elements.reflectance), cut.patches().emission};
   // Row sums are 1 within 1e-3 (see Reciprocal.KeepsRowSums), and 1 / (1 - rho) doubles that.
   for (const Rgb& e : room.all(3, 64)) EXPECT_NEAR(e.x, 2 * kPi, 2e-3 * double(2 * kPi));
 }
@@ -182,7 +182,7 @@ Room box_in_a_room(size_t count) {
   scene::place(scene, std::move(box));
   const Cut cut(std::move(scene), count);
   return {cut.reciprocal_factors(512), cut.patched.tree, cut.patches().area_m2,
-          cut.patches().elements.reflectance, cut.patches().emission};
+          copied(cut.patches().elements.reflectance), cut.patches().emission};
 }
 
 TEST(AllBounces, HardlyPassAClosedWall) {

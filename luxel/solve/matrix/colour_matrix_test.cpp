@@ -48,7 +48,8 @@ const ColourRoom& cornell() {
   static const ColourRoom room = [] {
     const Cut cut(scene::cornell_box(), 300);
     return ColourRoom{cut.reciprocal_factors(1024), cut.patches().area_m2,
-                      cut.patches().elements.reflectance, testing::random_light(cut.size(), 1)};
+                      copied(cut.patches().elements.reflectance),
+                      testing::random_light(cut.size(), 1)};
   }();
   return room;
 }

@@ -80,7 +80,8 @@ const LowrankRoom& lowrank_cornell() {
   static const LowrankRoom room = [] {
     const testing::Cut cut(scene::cornell_box(), 400);
     return LowrankRoom{cut.reciprocal_factors(1024), cut.patches().area_m2,
-                       cut.patches().elements.reflectance, testing::random_light(cut.size(), 5)};
+                       copied(cut.patches().elements.reflectance),
+                       testing::random_light(cut.size(), 5)};
   }();
   return room;
 }

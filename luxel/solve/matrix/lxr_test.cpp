@@ -141,8 +141,9 @@ TEST(Lxr, ComesBackFromARealScene) {
   auto matrix = compress(factors, cut.patched.tree, p.centroid, p.area_m2, {}, progress);
   ASSERT_TRUE(matrix);
   RelightData data = small_data();
-  data.position = p.elements.position, data.normal = p.elements.normal, data.area_m2 = p.area_m2;
-  data.reflectance = p.elements.reflectance, data.emission = p.emission;
+  data.position = copied(p.elements.position), data.normal = copied(p.elements.normal);
+  data.area_m2 = p.area_m2;
+  data.reflectance = copied(p.elements.reflectance), data.emission = p.emission;
   data.sky.assign(cut.size(), 0), data.material.assign(cut.size(), 1);
   data.first_probe = p.first_point, data.probe = p.points, data.glow = {};
   data.codec = HierarchicalCodec{

@@ -10,8 +10,9 @@ namespace luxel::matrix {
 namespace {
 
 void take_patches(const Patches& patches, RelightData& out) {
-  out.position = patches.elements.position, out.normal = patches.elements.normal;
-  out.reflectance = patches.elements.reflectance;
+  out.position = copied(patches.elements.position);
+  out.normal = copied(patches.elements.normal);
+  out.reflectance = copied(patches.elements.reflectance);
   out.area_m2 = patches.area_m2, out.emission = patches.emission, out.material = patches.material;
   for (size_t i = 0; i < patches.size(); ++i) {
     out.first_probe.push_back(uint32_t(out.probe.size()));

@@ -264,7 +264,7 @@ int enough_sweeps(const Trials& trials, double error) {
 std::vector<double> errors_of_products(const Prepared& prepared, const Trials& trials,
                                        int products) {
   const Patches& patches = prepared.patched.patches;
-  const std::vector<Rgb>& rho = patches.elements.reflectance;
+  const std::span<const Rgb> rho = patches.elements.reflectance;
   std::vector<double> squares(size_t(products), 0.0);
   std::vector<Rgb> radiosity(patches.size()), irradiance(patches.size());
   for (size_t t = 0; t < trials.sent.size(); ++t) {

@@ -40,7 +40,8 @@ Result<std::shared_ptr<KnownLight>> known_light(const light::TexelScene& in,
                                                    : trace::RayTracer::build(out->scene));
   out->tracer.emplace(std::move(tracer));
   out->material_as_read = materials_as_read(as_read, in.scene, {});
-  out->position = in.elements.position, out->normal = in.elements.geometric_normal;
+  out->position = copied(in.elements.position);
+  out->normal = copied(in.elements.geometric_normal);
   out->texel_m2 = area_of(in.scene) / float(std::max<size_t>(in.map.texels.size(), 1));
   return out;
 }

@@ -136,7 +136,7 @@ Result<ReadCheck> make_read_check(const light::TexelScene& in, const transport::
                         .scratch_folder = params.scratch_folder,
                         .follows_near = params.follows_near},
                        progress));
-  out.reflectance = std::move(places.reflectance);
+  out.reflectance.assign(places.reflectance.begin(), places.reflectance.end());
   return out;
 }
 

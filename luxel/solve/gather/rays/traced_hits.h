@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "luxel/base/bytes_per_entry.h"
+#include "luxel/base/mapped_memory.h"
 #include "luxel/base/team.h"
 #include "luxel/base/vec.h"
 #include "luxel/solve/gather/rays/cell_guide.h"
@@ -41,8 +42,8 @@ struct TracedHits {
   /// that were followed on, but for what they read in the map in the end: the sum of radiances,
   /// that of their squared luminances, and that of the first half of the samples' luminances minus
   /// the other half's.
-  std::vector<Rgb> sky;
-  std::vector<float> sky_luminance2, sky_first_less_second;
+  MappedVector<Rgb> sky;
+  MappedVector<float> sky_luminance2, sky_first_less_second;
   std::vector<Rgb> sky_by_layer;  ///< with layers: `sky`, layer by layer for each element
   /// With EarlierRays::sent, per element: by how much more its rays bring of the light of then than
   /// they did, as a sum of radiosities; and 1 where of some of them nothing was known, so that it
@@ -57,14 +58,16 @@ struct TracedHits {
   uint64_t bytes_in_file() const;
 };
 
+/// The arrays of TracedHits that no_hits() may put into mapped memory.
+inline constexpr uint64_t kBroughtBytesPerElement = bytes_per_entry(
+    &TracedHits::sky, &TracedHits::sky_luminance2, &TracedHits::sky_first_less_second);
 /// What TracedHits takes per element besides the hits themselves, in one round: its own arrays, and
 /// where each element's hits end.
 inline constexpr uint64_t kTracedBytesPerElement =
     bytes_per_entry(&TracedHits::samples, &TracedHits::last_round, &TracedHits::first_round,
                     &TracedHits::guided, &TracedHits::counted, &TracedHits::escaped,
-                    &TracedHits::met_back, &TracedHits::met_double_sided_back, &TracedHits::sky,
-                    &TracedHits::sky_luminance2, &TracedHits::sky_first_less_second) +
-    bytes_per_entry(&HitTile::end);
+                    &TracedHits::met_back, &TracedHits::met_double_sided_back) +
+    kBroughtBytesPerElement + bytes_per_entry(&HitTile::end);
 /// The part of it that gather() gives back when it knows which elements are enclosed.
 inline constexpr uint64_t kEndCountBytesPerElement =
     bytes_per_entry(&TracedHits::escaped, &TracedHits::met_double_sided_back);
@@ -93,7 +96,9 @@ float rays_per_sample(const TracedHits& hits, size_t element);
 /// anew, and follows the guide at a level.
 void begin_guided(TracedHits& hits, size_t element, int level);
 
-/// Nothing traced yet. `layers`: how many there are; 0: light is not told apart.
-TracedHits no_hits(size_t elements, size_t layers = 0);
+/// Nothing traced yet. `layers`: how many there are; 0: light is not told apart. What rays brought
+/// lies in `memory` where there is one.
+TracedHits no_hits(size_t elements, size_t layers = 0,
+                   std::shared_ptr<MappedMemory> memory = nullptr);
 
 }  // namespace luxel::gather

@@ -371,5 +371,22 @@ TEST(MaxMemorySlow, TheLeastThatWorksIsKept) {
   }
 }
 
+// A map whose texels lie in files has the bits of one in memory, which takes more of it.
+TEST(MaxMemorySlow, LargeMapsLieInFiles) {
+  const ScratchFolder s;
+  const std::string scene = scene_file("cornell-box.glb");
+  const std::string options =
+      "--resolution 3072 --samples 2 --direct-samples 1 --supersample 1 --bounces 1 ";
+  const std::string least = least_memory(scene, s.path, options);
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "memory", options).code, 0);
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "files", options + "--max-memory " + least).code, 0)
+      << least;
+  for (const char* file : {"lightmap.exr", "baked.glb", "preview.png"})
+    EXPECT_EQ(slurp(s.path / "memory" / file), slurp(s.path / "files" / file)) << file;
+  // A tenth, as above.
+  const auto json = nlohmann::json::parse(slurp(s.path / "files" / "bake.json"));
+  EXPECT_LT(double(json["peak_memory_bytes"]), 1.1 * double(json["settings"]["max_memory_bytes"]));
+}
+
 }  // namespace
 }  // namespace luxel::testing_support

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
@@ -56,15 +57,16 @@ class BakesOfATeam : public ::testing::Test {
     EXPECT_EQ(r.code, 0) << r.err;
     return results_in(folder);
   }
-  /// Kills the process of a rank whose bake this test has started. False: there is none.
-  bool kill_rank(int rank) const;
+  /// Sends a signal to the process of a rank whose bake this test has started. False: there is
+  /// none.
+  bool signal_rank(int rank, int signal) const;
 
   const ScratchFolder scratch_;
   const fs::path folder_ = scratch_.path / "baked";
 };
 using BakesOfATeamSlow = BakesOfATeam;
 
-bool BakesOfATeam::kill_rank(int rank) const {
+bool BakesOfATeam::signal_rank(int rank, int signal) const {
   const std::string own_rank = fmt::format("OMPI_COMM_WORLD_RANK={}", rank) + '\0';
   std::error_code error;
   for (const auto& entry : fs::directory_iterator("/proc", error)) {
@@ -73,7 +75,7 @@ bool BakesOfATeam::kill_rank(int rank) const {
     if (slurp(entry.path() / "comm") != "luxel\n") continue;
     if (slurp(entry.path() / "cmdline").find(folder_.string()) == std::string::npos) continue;
     if (slurp(entry.path() / "environ").find(own_rank) == std::string::npos) continue;
-    return ::kill(std::stoi(name), SIGKILL) == 0;
+    return ::kill(std::stoi(name), signal) == 0;
   }
   return false;
 }
@@ -166,6 +168,56 @@ TEST_F(BakesOfATeam, AreRefusedWithOneSentence) {
       HasSubstr("process 1 of 2 ("));
 }
 
+// A limit on the size of files stands for the disk of one of two nodes.
+TEST_F(BakesOfATeam, GoOnWithoutTheCheckpointOfAFullDisk) {
+  const std::string more = scene_file("office.glb") + " --resolution 128 --samples 256";
+  const std::string each = bake(more + " --checkpoint 0.01 --processes-per-node 2 --max-memory 2G");
+  const CommandResult r =
+      shell(mpirun(1) + " " LUXEL_BINARY " " + each +
+            " : -n 1 sh -c 'ulimit -f 100; exec " LUXEL_BINARY " " + each + "'");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("warning: process 1: cannot write " +
+                               (folder_ / "checkpoint-1.luxel").string() + ": File too large; "));
+  EXPECT_EQ(results_in(folder_), alone(more));
+}
+
+TEST_F(BakesOfATeamSlow, SayWhichProcessHasNoRoomForItsHits) {
+  const std::string more = scene_file("office.glb") + " --resolution 128 --samples 2048";
+  const std::string refused = together(2, more + " --max-memory 1M").err;
+  const size_t at = refused.find("that works is ");
+  ASSERT_NE(at, std::string::npos) << refused;
+  // A little more than the least, which the processes need not have in common: most of the 100 MB
+  // of each one's hits go to the disk.
+  const int least_mb = std::stoi(refused.substr(at + 14));
+  const std::string each =
+      bake(more + fmt::format(" --processes-per-node 2 --max-memory {}M", least_mb + 20));
+  const CommandResult r =
+      shell(mpirun(1) + " " LUXEL_BINARY " " + each +
+            " : -n 1 sh -c 'ulimit -f 100; exec " LUXEL_BINARY " " + each + "'");
+  EXPECT_NE(r.code, 0);
+  EXPECT_THAT(r.err, HasSubstr("process 1 of 2 ("));
+  EXPECT_THAT(r.err, HasSubstr("cannot write temporary data to "));
+}
+
+// One process has a tenth of its time: it makes less, and nothing else changes.
+TEST_F(BakesOfATeamSlow, WaitForAProcessThatIsTenTimesSlower) {
+  const std::string more = scene_file("office.glb") + " --resolution 192 --samples 256";
+  const std::string expected = alone(more);
+  std::atomic<bool> is_over = false;
+  std::thread brake([&] {
+    while (!is_over) {
+      signal_rank(1, SIGSTOP);
+      std::this_thread::sleep_for(std::chrono::milliseconds(90));
+      signal_rank(1, SIGCONT);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  });
+  const std::string found = done_together(2, more);
+  is_over = true;
+  brake.join();
+  EXPECT_EQ(found, expected);
+}
+
 /// Bakes that are killed, process by process, until one comes through.
 class KilledBakes : public BakesOfATeam {
  protected:
@@ -175,7 +227,7 @@ class KilledBakes : public BakesOfATeam {
     CommandResult r;
     std::thread bake([&] { r = together(processes, more_ + resume); });
     std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
-    const bool killed = kill_rank(rank);
+    const bool killed = signal_rank(rank, SIGKILL);
     bake.join();
     if (!killed) EXPECT_EQ(r.code, 0) << r.err;
     return killed && r.code != 0;

@@ -73,10 +73,9 @@ Attempt make_attempt(const std::vector<TurnedChart>& charts, double density, con
 
 /// The chart in the direction of that number among those in which it may lie.
 const FlatChart& laid_chart(const TurnedChart& chart, int number, const Attempt& attempt) {
-  size_t d = 0;
-  for (; number > 0; --number) do
-      ++d;
-    while (!may_lie(chart, d, attempt));
+  size_t d = 0;  // the first may always lie
+  while (number > 0)
+    if (may_lie(chart, ++d, attempt)) --number;
   return chart[d];
 }
 

@@ -13,14 +13,16 @@
 
 namespace luxel {
 
-/// The part of a limit of memory that pages of such files may take at least, when they are needed.
-inline constexpr uint64_t kPartOfMappedPages = 16;
+/// What pages of such files may take in any case. Two threads look at so many between one look at
+/// the memory that is held and the next.
+inline constexpr uint64_t kMappedPagesBytes = uint64_t(256) << 20;
 
 /// A folder for such files. Arrays that are gone over in order suit them; those of which entries
 /// are read here and there do not.
 class MappedMemory {
  public:
-  /// While the process holds more than `most_resident_bytes`, pages of the files are let go of.
+  /// While the process holds more than `most_resident_bytes`, a thread lets go of pages of the files
+  /// every few milliseconds.
   MappedMemory(std::filesystem::path folder, uint64_t most_resident_bytes);
   ~MappedMemory();
   MappedMemory(const MappedMemory&) = delete;

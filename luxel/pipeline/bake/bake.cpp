@@ -97,7 +97,7 @@ Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progre
   LUXEL_TRY_STATUS(check_same_settings(team, identity_of(settings), progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), team);
   BakeCache cache(settings, settings_of_kept_bake(settings));
-  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device, team, true}));
+  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache, device, team}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());
   if (!cache.failure().empty()) result.warnings.push_back(cache.failure());

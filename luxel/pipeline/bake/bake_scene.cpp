@@ -170,7 +170,7 @@ SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& 
   return out;
 }
 
-/// Frees what only denoising and callers look at.
+/// Frees what no file of a bake holds.
 void drop_parts(TexelLight& light) {
   free_memory(light.variance), free_memory(light.direct), free_memory(light.direct_variance);
 }
@@ -203,9 +203,12 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   }
   if (settings.denoise)
     LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress, keepers.team));
+  LUXEL_TRY(const std::vector<std::string> failures,
+            failures_of_others(keepers.team, parts ? parts->failure() : "", progress));
+  bake.warnings.insert(bake.warnings.end(), failures.begin(), failures.end());
   LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   if (keepers.cache) keepers.cache->solved();
-  if (keepers.only_for_files) drop_parts(bake.light);
+  if (files_of(input) && !watcher.on_estimate) drop_parts(bake.light);
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
   const std::string dark =
       settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();

@@ -32,8 +32,6 @@ struct Keepers {
   BakeCache* cache = nullptr;
   const BakeDevice* device = nullptr;
   Team* team = nullptr;  ///< see bake_scene()
-  /// Of the light nothing is kept that no file holds: neither its direct part nor variances.
-  bool only_for_files = false;
 };
 
 /// A finished bake in memory, before anything is written.

@@ -55,6 +55,19 @@ Status check_same_settings(Team* team, const nlohmann::json& identity, Progress&
   return {};
 }
 
+Result<std::vector<std::string>> failures_of_others(Team* team, const std::string& own,
+                                                    Progress& progress) {
+  std::vector<std::string> out;
+  if (!team) return out;
+  LUXEL_TRY(const auto all, team->all_gather(std::as_bytes(std::span(own)), progress));
+  for (size_t rank = 0; rank < all.size(); ++rank)
+    if (rank != team->rank() && !all[rank].empty())
+      out.push_back(fmt::format(
+          "process {}: {}", rank,
+          std::string_view(reinterpret_cast<const char*>(all[rank].data()), all[rank].size())));
+  return out;
+}
+
 nlohmann::json about_team(const Team* team) {
   if (!team) return nullptr;
   const Team::Gathered all = team->gathered();

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
@@ -16,6 +18,11 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
 /// Errors: members were given other settings than the first one (bad_setting), of those that
 /// `identity` has (bake_identity()); another member gives up.
 Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress);
+
+/// What kept other members of a team from keeping finished parts, each with its number; `own` is
+/// what kept this one, or empty. Errors: another member gives up.
+Result<std::vector<std::string>> failures_of_others(Team* team, const std::string& own,
+                                                    Progress& progress);
 
 /// For bake.json: how many members there are, how often they have given each other something, and
 /// how many bytes; null: there is no team.

@@ -8,6 +8,7 @@
 #include "luxel/solve/gather/bounce/bounce_layers.h"
 #include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
+#include "luxel/solve/gather/budget/light_errors.h"
 #include "luxel/solve/gather/budget/read_check.h"
 #include "luxel/solve/gather/gather.h"
 
@@ -72,13 +73,15 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
       (scatters ? 2 : 1) * gather::kRadiosityBytesPerTexel * square;
   const uint64_t last = bounced + gather::kEnclosedBytesPerElement * n -
                         gather::kEndCountBytesPerElement * n + kept.bouncing;
+  const uint64_t judged =
+      traced + (gather::kBouncedBytesPerElement + gather::kJudgedBytesPerElement) * n;
   const uint64_t denoised = settings.denoise ? (kLightBytesPerElement + kDenoise) * n : 0;
   const uint64_t turned = settings.directional == Directional::none ? 0 : kDirection * n;
   const uint64_t files =
-      kLightBytesPerElement * n + turned +
+      (kLightBytesPerElement - (in_files && !shows ? kPartsBytesPerElement : 0)) * n + turned +
       (kSquareFiles + (scatters ? gather::kRadiosityBytesPerTexel : 0)) * square + kept.ending;
   return std::max({traced + gather::kTargetBytesPerElement * n, rounds ? bounced : 0,
-                   last - given_back, denoised, files - given_back});
+                   last - given_back, judged - given_back, denoised, files - given_back});
 }
 
 }  // namespace

@@ -9,6 +9,9 @@ namespace {
 
 /// What other solvers leave for each texel, and what they and the steps after them take.
 constexpr uint64_t kOther = 72, kSquareOther = 20;
+/// What gather and the steps after it take at most, in a bake without rounds, and what keeping
+/// takes besides.
+constexpr uint64_t kMost = 150, kMostKept = 130;
 /// What threads work in and allocators hold, 6 to 14 MiB beyond all of the above in scenes of half
 /// a million texels, and what differs from run to run: by this much less than the size that is
 /// advised.
@@ -23,6 +26,11 @@ std::string size_text(uint64_t bytes) {
 bool looks_at_places(const BakeSettings& settings) {
   return settings.denoise || settings.directional != Directional::none || settings.keep ||
          !settings.shadow_mask.empty() || settings.occlusion_distance_m > 0;
+}
+
+uint64_t most_bytes_per_texel(const BakeSettings& settings) {
+  return kMost + (settings.keep ? kMostKept : 0) + (settings.denoise ? kDenoise : 0) +
+         (settings.directional == Directional::none ? 0 : kDirection);
 }
 
 const MappedMemory* files_of(const light::TexelScene& in) {
@@ -41,13 +49,9 @@ uint64_t bytes_of_light(const light::TexelScene& in, const BakeSettings& setting
 Result<uint64_t> memory_to_spare(const light::TexelScene& in, const BakeSettings& settings,
                                  uint64_t besides, uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
-  uint64_t needed = besides;
-  if (const MappedMemory* const files = files_of(in)) {
-    // Pages that are being looked at need room, too.
-    files->let_go();
-    needed += settings.max_memory_bytes / kPartOfMappedPages;
-  }
-  needed += resident_bytes();
+  const MappedMemory* const files = files_of(in);
+  if (files) files->let_go();
+  const uint64_t needed = resident_bytes() + besides + (files ? kMappedPagesBytes : 0);
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {
     const uint64_t free = available_bytes() / 5 * 4;

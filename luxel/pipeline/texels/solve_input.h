@@ -99,6 +99,10 @@ struct TexelLight {
   std::vector<std::string> warnings;
   std::optional<VertexLit> vertex_lit;  ///< with --vertex-colors
 };
+/// Those of its arrays that a bake gives back before files are made, where its texels lie in files
+/// (files_of()) and nobody watches it.
+inline constexpr uint64_t kPartsBytesPerElement =
+    bytes_per_entry(&TexelLight::variance, &TexelLight::direct, &TexelLight::direct_variance);
 /// What TexelLight takes per element besides that of layers, where a solver fills all of it.
 inline constexpr uint64_t kLightBytesPerElement = bytes_per_entry(
     &TexelLight::irradiance, &TexelLight::variance, &TexelLight::direct,

@@ -9,6 +9,7 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/base/share_out.h"
+#include "luxel/pipeline/solver/memory.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/visible_samples.h"
@@ -25,19 +26,20 @@ atlas::AtlasParams params_of(const BakeSettings& settings) {
   return params;
 }
 
-/// About what a bake takes at most for each texel of the square, hits aside.
-constexpr uint64_t kBytesOfTexel = 130;
+/// Bakes that need less do not come to lie in files: there is always as much.
+constexpr uint64_t kLeastInFiles = uint64_t(1) << 30;
 
-/// Where arrays of so many texels lie that are gone over in order: nowhere in particular, or in
-/// files where a bake would need more memory than it may have.
+/// Where the arrays of so many texels lie that are gone over in order: nowhere in particular, or in
+/// files where a bake may need more memory than it may have.
 std::shared_ptr<MappedMemory> memory_for(const BakeSettings& settings, int resolution) {
   const uint64_t limit = settings.max_memory_bytes > 0
                              ? settings.max_memory_bytes
                              : resident_bytes() + available_bytes() / 5 * 4;
-  const uint64_t side = uint64_t(resolution);
-  if (resident_bytes() + kBytesOfTexel * side * side <= limit) return nullptr;
+  const uint64_t needed =
+      most_bytes_per_texel(settings) * uint64_t(resolution) * uint64_t(resolution);
+  if (needed < kLeastInFiles || resident_bytes() + needed <= limit) return nullptr;
   return std::make_shared<MappedMemory>(nearest_folder(settings.output),
-                                        limit - limit / kPartOfMappedPages);
+                                        limit - std::min(limit, kMappedPagesBytes));
 }
 
 Result<TexelLayout> lay_out_once(const BakeSettings& settings, const atlas::AtlasParams& params,

@@ -275,5 +275,20 @@ TEST(SlowGather, AFurnaceDoesNotSeeGlassThatLosesNothing) {
   EXPECT_NEAR(sum / double(result.irradiance.size()), 0.995, 0.01);
 }
 
+// Whatever lies in files, and however often its pages are let go of.
+TEST(Gather, HasTheSameBitsInMappedMemory) {
+  constexpr int kSide = 512;  // texels of over a megabyte: less would lie on the heap
+  const GatherParams params = with_samples(8, 4);
+  const auto memory = std::make_shared<MappedMemory>(::testing::TempDir(), 1);
+  const auto mapped = lay_out(scene::cornell_box(), kSide, memory);
+  ASSERT_TRUE(memory->holds(mapped->map.texels.data()));
+  ASSERT_TRUE(memory->holds(mapped->elements.normal.data()));
+  const Gather expected = solve(*lay_out(scene::cornell_box(), kSide), params);
+  const Gather found = solve(*mapped, params);
+  EXPECT_EQ(found.irradiance, expected.irradiance);
+  EXPECT_EQ(found.direct, expected.direct);
+  EXPECT_EQ(memory->trouble(), "");
+}
+
 }  // namespace
 }  // namespace luxel::gather

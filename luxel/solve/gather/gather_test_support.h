@@ -32,7 +32,9 @@ inline void make_ready(Room& room) {
   room.tracer.emplace(std::move(*tracer));
 }
 
-inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
+/// Texels and elements lie in `memory` where there is one.
+inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution,
+                                     std::shared_ptr<MappedMemory> memory = nullptr) {
   auto room = std::make_unique<Room>();
   room->scene = std::move(scene);
   Progress progress;
@@ -42,7 +44,7 @@ inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
   auto atlas = atlas::make_atlas(room->scene, params, progress);
   EXPECT_TRUE(atlas) << atlas.error().message;
   room->atlas = std::move(*atlas);
-  room->map = atlas::rasterise(room->scene, room->atlas);
+  room->map = atlas::rasterise(room->scene, room->atlas, std::move(memory));
   make_ready(*room);
   return room;
 }

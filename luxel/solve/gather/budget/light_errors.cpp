@@ -28,6 +28,11 @@ Result<TexelError> error_of_texels(const light::TexelScene& scene, const LightTo
 Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJudge& light,
                                  Progress& progress) {
   const std::vector<Rgb>& e = light.bounced.irradiance;
+  // First, while nothing else is there: it takes a radiosity map.
+  TexelError texels;
+  if (light.bounces != 0) {
+    LUXEL_TRY(texels, error_of_texels(scene, light, progress));
+  }
   auto direct = pooled_variances(scene.atlas, scene.map,
                                  {light.direct.variance, light.direct.split_variance});
   const auto gathered = pooled_variances(scene.atlas, scene.map,
@@ -41,10 +46,6 @@ Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJu
   out.all = relative_errors(out.noise_variance, e, light.hits);
   out.noise_p95 = error_p95(out.all, counts);
   out.variance = out.noise_variance;
-  TexelError texels;
-  if (light.bounces != 0) {
-    LUXEL_TRY(texels, error_of_texels(scene, light, progress));
-  }
   for (size_t i = 0; i < e.size(); ++i) {
     const Rgb read = e[i] - source_of(light.hits, light.direct.irradiance, i);
     const double off = texels.safe * double(luminance(read));

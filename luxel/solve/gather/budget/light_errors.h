@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/light/direct_light.h"
@@ -34,6 +35,12 @@ struct LightErrors {
   float noise_p95 = 0, p95 = 0;         ///< error_p95
   ExpectedSquares expected;
 };
+
+/// What light_errors() takes, and for the most part leaves.
+inline constexpr uint64_t kJudgedBytesPerElement =
+    bytes_per_entry(&LightErrors::noise_variance, &LightErrors::variance, &LightErrors::direct,
+                    &LightErrors::gathered, &LightErrors::all) +
+    sizeof(float);
 
 /// Errors: the file of hits cannot be read, cancelled.
 Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJudge& light,

@@ -21,8 +21,8 @@ inline constexpr uint64_t kMappedPagesBytes = uint64_t(256) << 20;
 /// are read here and there do not.
 class MappedMemory {
  public:
-  /// While the process holds more than `most_resident_bytes`, a thread lets go of pages of the files
-  /// every few milliseconds.
+  /// While the process holds more than `most_resident_bytes`, a thread lets go of pages of the
+  /// files every few milliseconds.
   MappedMemory(std::filesystem::path folder, uint64_t most_resident_bytes);
   ~MappedMemory();
   MappedMemory(const MappedMemory&) = delete;

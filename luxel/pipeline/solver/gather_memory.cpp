@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "luxel/pipeline/reuse/bake_cache.h"
-#include "luxel/pipeline/solver/finishing_memory.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/texels/finishing_memory.h"
 #include "luxel/solve/gather/bounce/bounce_layers.h"
 #include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"

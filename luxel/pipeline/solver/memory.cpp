@@ -2,16 +2,13 @@
 
 #include "luxel/base/mapped_memory.h"
 #include "luxel/base/process_memory.h"
-#include "luxel/pipeline/solver/finishing_memory.h"
+#include "luxel/pipeline/texels/finishing_memory.h"
 
 namespace luxel::pipeline {
 namespace {
 
 /// What other solvers leave for each texel, and what they and the steps after them take.
 constexpr uint64_t kOther = 72, kSquareOther = 20;
-/// What gather and the steps after it take at most, in a bake without rounds, and what keeping
-/// takes besides.
-constexpr uint64_t kMost = 150, kMostKept = 130;
 /// What threads work in and allocators hold, 6 to 14 MiB beyond all of the above in scenes of half
 /// a million texels, and what differs from run to run: by this much less than the size that is
 /// advised.
@@ -26,11 +23,6 @@ std::string size_text(uint64_t bytes) {
 bool looks_at_places(const BakeSettings& settings) {
   return settings.denoise || settings.directional != Directional::none || settings.keep ||
          !settings.shadow_mask.empty() || settings.occlusion_distance_m > 0;
-}
-
-uint64_t most_bytes_per_texel(const BakeSettings& settings) {
-  return kMost + (settings.keep ? kMostKept : 0) + (settings.denoise ? kDenoise : 0) +
-         (settings.directional == Directional::none ? 0 : kDirection);
 }
 
 const MappedMemory* files_of(const light::TexelScene& in) {

@@ -12,9 +12,6 @@ inline constexpr uint64_t kMinHitBytes = 16u << 20;
 /// Whether anything that comes after rays looks at where the elements lie.
 bool looks_at_places(const BakeSettings& settings);
 
-/// About the most that any bake takes per texel of the square, hits and the scene aside [bytes].
-uint64_t most_bytes_per_texel(const BakeSettings& settings);
-
 /// The files in which texels and elements lie, of a bake that needs more memory than it may have;
 /// null: they are in memory.
 const MappedMemory* files_of(const light::TexelScene& in);

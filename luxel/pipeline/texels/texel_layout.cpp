@@ -9,7 +9,7 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/base/share_out.h"
-#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/texels/finishing_memory.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/visible_samples.h"
@@ -24,6 +24,15 @@ atlas::AtlasParams params_of(const BakeSettings& settings) {
   params.texels_per_metre = settings.texels_per_metre;
   params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
   return params;
+}
+
+/// What gather and the steps after it take at most in bytes per texel of the square, in a bake
+/// without rounds, hits and the scene aside; and what keeping takes besides.
+constexpr uint64_t kMost = 150, kMostKept = 130;
+
+uint64_t most_bytes_per_texel(const BakeSettings& settings) {
+  return kMost + (settings.keep ? kMostKept : 0) + (settings.denoise ? kDenoise : 0) +
+         (settings.directional == Directional::none ? 0 : kDirection);
 }
 
 /// Bakes that need less do not come to lie in files: there is always as much.

@@ -16,8 +16,8 @@ namespace {
 constexpr double kFlatAngle = 0.01;    ///< faces this close to a patch's first face are coplanar
 constexpr double kCreaseAngle = 0.75;  ///< light changes at a sharper edge: no chart crosses it
 
-constexpr size_t kManyNormals = 64;      ///< of fewer, none is left out
-constexpr double kSurelyInFront = 0.01;  ///< cosine of a little less than a right angle
+constexpr size_t kManyNormals = 64;     ///< of fewer, none is left out
+constexpr double kSurelyInFront = 0.2;  ///< cosine of less than a right angle
 
 /// A size or cost in steps of one percent, so that symmetric candidates compare equal whatever the
 /// unit of length did to their last digits. What is as good as nothing is one step, too, and so is
@@ -118,7 +118,7 @@ struct Cluster {
 
 /// Leaves out normals that lie between others, as seen along the axis, from which all are less than
 /// a right angle away. Who is within an angle of some direction that is less than a right angle has
-/// all between them within it, too: the outermost normals speak for all. Of many, a few are left.
+/// all between them within it, too: the outermost normals speak for all.
 void keep_outermost(std::vector<DVec3>& normals, DVec3 axis) {
   // On the plane across the axis great circles are straight lines: the outermost normals are the
   // corners of the convex hull, made by Andrew's monotone chains.
@@ -137,9 +137,10 @@ void keep_outermost(std::vector<DVec3>& normals, DVec3 axis) {
   std::ranges::sort(points, [](const Point& a, const Point& b) {
     return std::tie(a.x, a.y) < std::tie(b.x, b.y);
   });
-  // Surely right of the line from a to b, whatever rounding does: what is on it stays.
+  // Left of the line from a to b, or on it. What is left out may be outside of it by rounding
+  // alone: the points are at most 5 from the middle (kSurelyInFront).
   const auto is_inside = [](const Point& a, const Point& p, const Point& b) {
-    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 1e-12;
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > -1e-14;
   };
   normals.clear();
   for (const bool lower : {true, false}) {

@@ -35,7 +35,8 @@ void begin_guided(TracedHits& hits, size_t element, int level) {
 TracedHits no_hits(size_t elements, size_t layers, std::shared_ptr<MappedMemory> memory) {
   TracedHits out;
   out.sky = MappedVector<Rgb>(memory);
-  out.sky_luminance2 = out.sky_first_less_second = MappedVector<float>(memory);
+  out.sky_luminance2 = MappedVector<float>(memory);
+  out.sky_first_less_second = MappedVector<float>(memory);
   out.samples.resize(elements), out.last_round.resize(elements);
   out.first_round.resize(elements), out.guided.resize(elements), out.counted.resize(elements);
   out.escaped.resize(elements), out.met_back.resize(elements);

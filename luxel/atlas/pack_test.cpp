@@ -37,7 +37,7 @@ Mask random_mask(int width, int height, RandomStream& random) {
   return mask_of(width, height, cells);
 }
 
-/// The same with one run in each row, of any length and anywhere.
+/// A shape with one run in each row, of any length and anywhere.
 Mask ragged_mask(int width, int height, RandomStream& random) {
   Cells cells{{0, 0}, {width - 1, height - 1}};
   for (int j = 0; j < height; ++j) {

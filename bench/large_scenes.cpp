@@ -1,6 +1,7 @@
 #include "bench/large_scenes.h"
 
 #include "luxel/base/random.h"
+#include "luxel/scene/grid.h"
 #include "luxel/scene/place_camera.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
@@ -60,12 +61,7 @@ scene::Scene hills(int quads) {
       const float x = step * float(i), z = step * float(j);
       mesh.positions.push_back({x, height_m(x, z), z});
     }
-  const auto at = [&](int i, int j) { return uint32_t(j) * uint32_t(quads + 1) + uint32_t(i); };
-  for (int j = 0; j < quads; ++j)
-    for (int i = 0; i < quads; ++i) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
-    }
+  scene::add_grid_triangles(mesh, quads);
   mesh.triangle_material.assign(mesh.triangles.size(),
                                 scene::add_material(out, "grass", {0.3f, 0.4f, 0.2f}));
   scene::place(out, std::move(mesh));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/scene/grid.h"
+
 namespace luxel::atlas {
 namespace {
 
@@ -20,13 +22,7 @@ Faces sheet(int n, const Height& height) {
       const double x = double(i) / n, z = double(j) / n;
       mesh.positions.push_back({float(x), float(height(x, z)), float(z)});
     }
-  const auto at = [&](int i, int j) { return uint32_t(j * (n + 1) + i); };
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
-    }
-  mesh.triangle_material.assign(mesh.triangles.size(), 0);
+  scene::add_grid_triangles(mesh, n);
   scene.materials.emplace_back();
   scene.meshes.push_back(std::move(mesh));
   scene.instances.emplace_back();

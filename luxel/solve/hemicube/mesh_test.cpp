@@ -5,6 +5,7 @@
 #include <map>
 
 #include "luxel/base/vec_double.h"
+#include "luxel/scene/grid.h"
 #include "luxel/solve/hemicube/hemicube_test_support.h"
 #include "luxel/solve/hemicube/weld.h"
 
@@ -105,13 +106,7 @@ scene::Mesh jittered_sheet(int n, uint64_t seed) {
       mesh.positions.push_back(
           Vec3{float(i) + (rim ? 0 : dx), 0.3f * jitter(), float(j) + (rim ? 0 : dz)} / float(n));
     }
-  const auto at = [&](int i, int j) { return uint32_t(j * (n + 1) + i); };
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
-    }
-  mesh.triangle_material.assign(mesh.triangles.size(), 0);
+  scene::add_grid_triangles(mesh, n);
   return mesh;
 }
 

@@ -63,12 +63,6 @@ Result<Table> measure_maps(const std::filesystem::path& shared, int threads);
 Result<Table> measure_atlas(const std::filesystem::path& shared, int threads);
 /// Peak memory of a 2048 x 2048 bake of the largest scene, with and without --max-memory.
 Result<Table> measure_memory(const std::filesystem::path& shared, int threads);
-/// Time and memory of bakes as maps and scenes grow, to 16384 x 16384 texels and ten million
-/// triangles. Hours.
-Result<Table> measure_growth(const std::filesystem::path& shared, int threads);
-/// Those of one series: texels, triangles, copies, large.
-Result<Table> measure_growth_of(const std::filesystem::path& shared, const std::string& series,
-                                int threads);
 /// Gather with one and with two threads.
 Result<Table> measure_threads(const std::filesystem::path& shared, int threads);
 /// Errors of gather with and without --denoise against a bake of many samples.
@@ -114,7 +108,6 @@ inline constexpr std::array kBenches{Bench{"rays", measure_rays},
                                      Bench{"maps", measure_maps},
                                      Bench{"atlas", measure_atlas},
                                      Bench{"memory", measure_memory},
-                                     Bench{"growth", measure_growth, measure_growth_of},
                                      Bench{"threads", measure_threads},
                                      Bench{"denoise", measure_denoise},
                                      Bench{"scenes", measure_scenes},

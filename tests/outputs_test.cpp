@@ -383,8 +383,10 @@ TEST(MaxMemorySlow, LargeMapsLieInFiles) {
       << least;
   for (const char* file : {"lightmap.exr", "baked.glb", "preview.png"})
     EXPECT_EQ(slurp(s.path / "memory" / file), slurp(s.path / "files" / file)) << file;
-  // A tenth, as above.
   const auto json = nlohmann::json::parse(slurp(s.path / "files" / "bake.json"));
+  // Texels, elements and what their rays brought: 92 bytes.
+  EXPECT_GT(json["scratch_bytes"], 92 * json["counts"]["texels"].get<uint64_t>());
+  // A tenth, as above.
   EXPECT_LT(double(json["peak_memory_bytes"]), 1.1 * double(json["settings"]["max_memory_bytes"]));
 }
 

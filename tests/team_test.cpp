@@ -68,8 +68,10 @@ using BakesOfATeamSlow = BakesOfATeam;
 
 bool BakesOfATeam::signal_rank(int rank, int signal) const {
   const std::string own_rank = fmt::format("OMPI_COMM_WORLD_RANK={}", rank) + '\0';
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator("/proc", error)) {
+  std::error_code error;  // processes end while they are listed
+  for (fs::directory_iterator at("/proc", error); !error && at != fs::directory_iterator();
+       at.increment(error)) {
+    const fs::directory_entry& entry = *at;
     const std::string name = entry.path().filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     if (slurp(entry.path() / "comm") != "luxel\n") continue;
@@ -170,7 +172,7 @@ TEST_F(BakesOfATeam, AreRefusedWithOneSentence) {
 
 // A limit on the size of files stands for the disk of one of two nodes.
 TEST_F(BakesOfATeam, GoOnWithoutTheCheckpointOfAFullDisk) {
-  const std::string more = scene_file("office.glb") + " --resolution 128 --samples 256";
+  const std::string more = scene_file("office.glb") + " --resolution 128 --samples 1024";
   const std::string each = bake(more + " --checkpoint 0.01 --processes-per-node 2 --max-memory 2G");
   const CommandResult r =
       shell(mpirun(1) + " " LUXEL_BINARY " " + each +
@@ -204,9 +206,10 @@ TEST_F(BakesOfATeamSlow, WaitForAProcessThatIsTenTimesSlower) {
   const std::string more = scene_file("office.glb") + " --resolution 192 --samples 256";
   const std::string expected = alone(more);
   std::atomic<bool> is_over = false;
+  int stops = 0;
   std::thread brake([&] {
     while (!is_over) {
-      signal_rank(1, SIGSTOP);
+      stops += signal_rank(1, SIGSTOP);
       std::this_thread::sleep_for(std::chrono::milliseconds(90));
       signal_rank(1, SIGCONT);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -216,6 +219,7 @@ TEST_F(BakesOfATeamSlow, WaitForAProcessThatIsTenTimesSlower) {
   is_over = true;
   brake.join();
   EXPECT_EQ(found, expected);
+  EXPECT_GT(stops, 10);
 }
 
 /// Bakes that are killed, process by process, until one comes through.

@@ -9,6 +9,7 @@
 #include "apps/cli/cli.h"
 #include "bench/bench.h"
 #include "bench/gallery.h"
+#include "bench/growth.h"
 #include "bench/hemicube.h"
 #include "bench/hierarchical.h"
 #include "bench/relight.h"
@@ -21,7 +22,8 @@ namespace luxel::cli {
 namespace {
 
 constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight",
-                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated";
+                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated",
+                     *kGrowth = "growth";
 
 struct BenchOptions {
   Common common;
@@ -143,6 +145,14 @@ int run_relight(const BenchOptions& options, const std::filesystem::path& shared
       });
 }
 
+/// All of it, or the series in --scene.
+int run_growth(const BenchOptions& options) {
+  return run_page<bench::GrowthPage>(
+      options, kGrowth, {}, [&](const std::filesystem::path&, Progress& progress) {
+        return bench::measure_growth(options.scene, options.common.threads, progress);
+      });
+}
+
 /// Stated errors alone, on other scenes or of one solver.
 int run_stated(const BenchOptions& options) {
   const ThreadLimit limit(options.common.threads);
@@ -174,7 +184,8 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
 
 bool takes_scene(const std::string& name) {
   const auto is_it = [&](const bench::Bench& b) { return name == b.name && b.run_in; };
-  return name == kRelight || name == kGallery || std::ranges::any_of(bench::kBenches, is_it);
+  return name == kRelight || name == kGallery || name == kGrowth ||
+         std::ranges::any_of(bench::kBenches, is_it);
 }
 
 int run_bench(const BenchOptions& options) {
@@ -185,6 +196,7 @@ int run_bench(const BenchOptions& options) {
   if (of_stated && options.name != kStated)
     return report_usage("--first-seed and --only belong to `luxel bench stated`", options.common);
   if (options.name == kStated) return run_stated(options);
+  if (options.name == kGrowth) return run_growth(options);
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
   for (const BenchPage& page : kPages)
@@ -214,15 +226,16 @@ void register_bench(CLI::App& app, Action& action) {
       "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md "
       "or docs/guide/gallery.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all",     kValidation, kStated,      kGallery,
-                                 kHemicube, kRelight,    kHierarchical};
+  std::vector<std::string> names{"all",     kValidation, kStated,       kGallery,
+                                 kHemicube, kRelight,    kHierarchical, kGrowth};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
   bench
       ->add_option(
           "NAME", options->name,
           "Which table; all of them; or a page: validation holds luxel against exact answers "
           "and a path tracer (a quarter of an hour), gallery shows bakes without options "
-          "(most of an hour), stated prints stated errors against true ones")
+          "(most of an hour), stated prints stated errors against true ones; growth bakes maps "
+          "and scenes that grow (an hour, 20 GB of memory, 45 GB of the disk)")
       ->check(CLI::IsMember(names))
       ->required();
   bench->add_option(

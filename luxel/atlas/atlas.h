@@ -95,7 +95,7 @@ Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, P
 
 /// Clips every triangle against the texels it touches and gives each texel one owner: the triangle
 /// that holds its centre, else the one that covers most of it (ties: the lower number). Texels lie
-/// in `memory` where there is one.
+/// in `memory` where there is one, if they are many and it has room.
 TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas,
                    std::shared_ptr<MappedMemory> memory = nullptr);
 /// The map of texels that lie on the atlas.

@@ -65,8 +65,9 @@ Offer best_turn(const Sheet& sheet, const Pieces& pieces, const Turns& turns, Ju
                 double limit) {
   Offer best{{-1, -1}, limit};
   for (size_t t = 0; t < turns.count; ++t) {
-    const auto* before = turns.mask.data();
-    if (std::find(before, before + t, turns.mask[t]) != before + t) continue;  // the same again
+    const auto* first_turn = turns.mask.data();
+    if (std::find(first_turn, first_turn + t, turns.mask[t]) != first_turn + t)
+      continue;  // equal to one before
     const Shape& shape = pieces.shapes[turns.mask[t]];
     const double hanging = judge == Judge::bulk ? shape.mean_row : shape.height;
     const int last = int(std::min(double(sheet.strip.side()), std::ceil(best.score - hanging) - 1));

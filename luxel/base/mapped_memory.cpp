@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "luxel/base/process_memory.h"
@@ -15,30 +16,41 @@ namespace luxel {
 namespace {
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
-
-struct MappedFile {
-  ScratchFile file;
-  size_t bytes = 0;
-};
+/// With fewer pages of files than this, letting go of them helps nobody.
+constexpr uint64_t kWorthLettingGo = uint64_t(64) << 20;
 
 }  // namespace
 
 struct MappedMemory::State {
+  struct MappedFile {
+    ScratchFile file;
+    size_t bytes = 0;
+    void* place = nullptr;
+  };
+
   std::filesystem::path folder;
   mutable std::mutex mutex;
-  std::map<void*, MappedFile> files;  ///< by where they are mapped
-  std::string trouble;
+  std::map<const void*, MappedFile> files;  ///< by where they are mapped
+  uint64_t bytes_made = 0;
+  std::optional<Error> trouble;
   std::condition_variable over;
   bool is_over = false;
   std::thread watch;
 
+  Result<MappedFile> make_file(size_t file_bytes) const {
+    LUXEL_TRY(ScratchFile file, ScratchFile::create(folder));
+    LUXEL_TRY_STATUS(file.reserve(file_bytes));
+    LUXEL_TRY(void* const place, file.map(file_bytes));
+    return MappedFile{std::move(file), file_bytes, place};
+  }
   void let_go() const {
-    for (const auto& [place, file] : files) ::madvise(place, file.bytes, MADV_DONTNEED);
+    for (const auto& [place, file] : files) ::madvise(file.place, file.bytes, MADV_DONTNEED);
   }
   void keep_watch(uint64_t most_resident_bytes) {
     std::unique_lock lock(mutex);
     while (!over.wait_for(lock, kBetweenLooks, [&] { return is_over; }))
-      if (resident_bytes() > most_resident_bytes) let_go();
+      if (resident_bytes() > most_resident_bytes && resident_file_bytes() > kWorthLettingGo)
+        let_go();
   }
 };
 
@@ -56,33 +68,35 @@ MappedMemory::~MappedMemory() {
   }
   state_->over.notify_all();
   state_->watch.join();
-  for (const auto& [place, file] : state_->files) ::munmap(place, file.bytes);
+  for (const auto& [place, file] : state_->files) ::munmap(file.place, file.bytes);
 }
 
 void* MappedMemory::allocate(size_t bytes) {
+  // Where the file system cannot reserve room it writes all of it: the watch goes on meanwhile.
+  Result<State::MappedFile> made = state_->make_file(bytes);
   const std::lock_guard lock(state_->mutex);
-  const auto add_file = [&]() -> Result<void*> {
-    LUXEL_TRY(ScratchFile file, ScratchFile::create(state_->folder));
-    LUXEL_TRY_STATUS(file.reserve(bytes));
-    LUXEL_TRY(void* const place, file.map(bytes));
-    state_->files.emplace(place, MappedFile{std::move(file), bytes});
-    return place;
-  };
-  const Result<void*> place = add_file();
-  if (!place && state_->trouble.empty()) state_->trouble = place.error().message;
-  return place.value_or(nullptr);
+  if (!made) {
+    if (!state_->trouble) state_->trouble = made.error();
+    return nullptr;
+  }
+  void* const place = made->place;
+  state_->bytes_made += bytes;
+  state_->files.emplace(place, std::move(*made));
+  return place;
 }
 
-void MappedMemory::release(void* place) {
+bool MappedMemory::release(void* place) {
   const std::lock_guard lock(state_->mutex);
   const auto found = state_->files.find(place);
+  if (found == state_->files.end()) return false;
   ::munmap(place, found->second.bytes);
   state_->files.erase(found);
+  return true;
 }
 
 bool MappedMemory::holds(const void* place) const {
   const std::lock_guard lock(state_->mutex);
-  return state_->files.contains(const_cast<void*>(place));
+  return state_->files.contains(place);
 }
 
 void MappedMemory::let_go() const {
@@ -90,9 +104,15 @@ void MappedMemory::let_go() const {
   state_->let_go();
 }
 
-std::string MappedMemory::trouble() const {
+uint64_t MappedMemory::bytes_made() const {
   const std::lock_guard lock(state_->mutex);
-  return state_->trouble;
+  return state_->bytes_made;
+}
+
+Status MappedMemory::trouble() const {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->trouble) return tl::unexpected(*state_->trouble);
+  return {};
 }
 
 }  // namespace luxel

@@ -9,12 +9,26 @@
 
 namespace luxel {
 
-uint64_t resident_bytes() {
+namespace {
+
+/// Resident pages of the process, and of those that are files'.
+struct ResidentPages {
+  uint64_t all = 0, of_files = 0;
+};
+ResidentPages resident_pages() {
   std::ifstream in("/proc/self/statm");
-  uint64_t total = 0, resident = 0;
-  in >> total >> resident;
-  return resident * uint64_t(::sysconf(_SC_PAGESIZE));
+  uint64_t total = 0;
+  ResidentPages out;
+  in >> total >> out.all >> out.of_files;
+  return out;
 }
+
+uint64_t page_bytes() { return uint64_t(::sysconf(_SC_PAGESIZE)); }
+
+}  // namespace
+
+uint64_t resident_bytes() { return resident_pages().all * page_bytes(); }
+uint64_t resident_file_bytes() { return resident_pages().of_files * page_bytes(); }
 
 uint64_t peak_resident_bytes() {
   rusage usage{};

@@ -56,7 +56,8 @@ Status ScratchFile::read(uint64_t offset, void* bytes, size_t count) const {
 }
 
 Status ScratchFile::reserve(uint64_t bytes) const {
-  const int error = ::posix_fallocate(file_, 0, off_t(bytes));
+  int error = EINTR;
+  while (error == EINTR) error = ::posix_fallocate(file_, 0, off_t(bytes));
   if (error == 0) return {};
   return fail(error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
               "cannot make a temporary file of {}M in {}: {}; give more --max-memory or a folder "

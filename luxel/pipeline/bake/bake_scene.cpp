@@ -208,7 +208,10 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   bake.warnings.insert(bake.warnings.end(), failures.begin(), failures.end());
   LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   if (keepers.cache) keepers.cache->solved();
-  if (files_of(input) && !watcher.on_estimate) drop_parts(bake.light);
+  if (const MappedMemory* files = mapped_memory_of(input)) {
+    bake.light.scratch_bytes += files->bytes_made();
+    if (!watcher.on_estimate) drop_parts(bake.light);
+  }
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
   const std::string dark =
       settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();

@@ -54,7 +54,7 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
   const bool keeps_places =
       looks_at_places(settings) || shows || (stores.device && stores.device->is_optional);
   // What lies in files was not counted, and need not be given back.
-  const bool in_files = files_of(in) != nullptr;
+  const bool in_files = mapped_memory_of(in) != nullptr;
   const uint64_t given_back = keeps_places || in_files ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;
   const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;

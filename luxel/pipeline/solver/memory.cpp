@@ -25,7 +25,7 @@ bool looks_at_places(const BakeSettings& settings) {
          !settings.shadow_mask.empty() || settings.occlusion_distance_m > 0;
 }
 
-const MappedMemory* files_of(const light::TexelScene& in) {
+const MappedMemory* mapped_memory_of(const light::TexelScene& in) {
   return in.map.texels.get_allocator().memory.get();
 }
 
@@ -41,8 +41,11 @@ uint64_t bytes_of_light(const light::TexelScene& in, const BakeSettings& setting
 Result<uint64_t> memory_to_spare(const light::TexelScene& in, const BakeSettings& settings,
                                  uint64_t besides, uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
-  const MappedMemory* const files = files_of(in);
-  if (files) files->let_go();
+  const MappedMemory* const files = mapped_memory_of(in);
+  if (files) {
+    LUXEL_TRY_STATUS(files->trouble());
+    files->let_go();
+  }
   const uint64_t needed = resident_bytes() + besides + (files ? kMappedPagesBytes : 0);
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {

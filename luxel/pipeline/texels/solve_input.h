@@ -93,14 +93,14 @@ struct TexelLight {
   double relative_error = 0;       ///< estimated, root mean square over the mean
   std::vector<uint8_t> hidden;     ///< per texel: 1 inside a solid, where E means nothing
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
-  uint64_t scratch_bytes = 0;      ///< in temporary files
+  uint64_t scratch_bytes = 0;      ///< in temporary files, mapped ones too
   uint64_t elements = 0;           ///< of the solver's own mesh, when it has one
   std::string device;              ///< BakeDevice::name, if it took part
   std::vector<std::string> warnings;
   std::optional<VertexLit> vertex_lit;  ///< with --vertex-colors
 };
 /// Those of its arrays that a bake gives back before files are made, where its texels lie in files
-/// (files_of()) and nobody watches it.
+/// (mapped_memory_of()) and nobody watches it.
 inline constexpr uint64_t kPartsBytesPerElement =
     bytes_per_entry(&TexelLight::variance, &TexelLight::direct, &TexelLight::direct_variance);
 /// What TexelLight takes per element besides that of layers, where a solver fills all of it.

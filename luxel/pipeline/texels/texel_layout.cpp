@@ -11,6 +11,7 @@
 #include "luxel/base/share_out.h"
 #include "luxel/pipeline/texels/finishing_memory.h"
 #include "luxel/scene/drawn_triangle.h"
+#include "luxel/scene/sides.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/visible_samples.h"
 
@@ -26,26 +27,33 @@ atlas::AtlasParams params_of(const BakeSettings& settings) {
   return params;
 }
 
-/// What gather and the steps after it take at most in bytes per texel of the square, in a bake
-/// without rounds, hits and the scene aside; and what keeping takes besides.
-constexpr uint64_t kMost = 150, kMostKept = 130;
+// What gather and the steps after it take at most, in bytes per texel of the square, hits and the
+// scene aside; and what takes more. Too much makes a bake slower; too little has it refused where
+// it could have gone on in files.
+constexpr uint64_t kMost = 150, kMostOfRounds = 80, kMostKept = 130, kMostOfLayers = 600,
+                   kMostScattering = 60;
 
-uint64_t most_bytes_per_texel(const BakeSettings& settings) {
-  return kMost + (settings.keep ? kMostKept : 0) + (settings.denoise ? kDenoise : 0) +
+uint64_t most_bytes_per_texel(const BakeSettings& settings, const scene::Scene& scene) {
+  const bool has_layers =
+      settings.layers != light::LayerMode::none || settings.light != LightPart::all;
+  return kMost + (adds_rounds(settings) ? kMostOfRounds : 0) + (settings.keep ? kMostKept : 0) +
+         (has_layers ? kMostOfLayers : 0) + (scene::scatters_light(scene) ? kMostScattering : 0) +
+         (settings.denoise ? kDenoise : 0) +
          (settings.directional == Directional::none ? 0 : kDirection);
 }
 
-/// Bakes that need less do not come to lie in files: there is always as much.
+/// With bakes that need less, files would save too little.
 constexpr uint64_t kLeastInFiles = uint64_t(1) << 30;
 
-/// Where the arrays of so many texels lie that are gone over in order: nowhere in particular, or in
-/// files where a bake may need more memory than it may have.
-std::shared_ptr<MappedMemory> memory_for(const BakeSettings& settings, int resolution) {
+/// Where the arrays of so many texels lie that are gone over in order: on the heap, or in files
+/// where a bake may need more memory than it may have.
+std::shared_ptr<MappedMemory> memory_for(const BakeSettings& settings, const scene::Scene& scene,
+                                         int resolution) {
   const uint64_t limit = settings.max_memory_bytes > 0
                              ? settings.max_memory_bytes
                              : resident_bytes() + available_bytes() / 5 * 4;
   const uint64_t needed =
-      most_bytes_per_texel(settings) * uint64_t(resolution) * uint64_t(resolution);
+      most_bytes_per_texel(settings, scene) * uint64_t(resolution) * uint64_t(resolution);
   if (needed < kLeastInFiles || resident_bytes() + needed <= limit) return nullptr;
   return std::make_shared<MappedMemory>(nearest_folder(settings.output),
                                         limit - std::min(limit, kMappedPagesBytes));
@@ -54,7 +62,8 @@ std::shared_ptr<MappedMemory> memory_for(const BakeSettings& settings, int resol
 Result<TexelLayout> lay_out_once(const BakeSettings& settings, const atlas::AtlasParams& params,
                                  const scene::Scene& scene, Progress& progress) {
   LUXEL_TRY(atlas::Atlas atlas, atlas::make_atlas(scene, params, progress));
-  atlas::TexelMap map = atlas::rasterise(scene, atlas, memory_for(settings, atlas.resolution));
+  atlas::TexelMap map =
+      atlas::rasterise(scene, atlas, memory_for(settings, scene, atlas.resolution));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}, {}, {}};
@@ -82,6 +91,16 @@ Status cut_at_barriers(const BakeSettings& settings, const atlas::AtlasParams& p
     layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
     LUXEL_TRY(layout, lay_out_once(settings, grouped, scene, progress));
   }
+}
+
+/// The map of kept texels, which are not kept any more.
+atlas::TexelMap kept_map(const BakeSettings& settings, const scene::Scene& scene,
+                         KeptLayout& kept) {
+  MappedVector<atlas::Texel> texels(
+      kept.texels.begin(), kept.texels.end(),
+      MappedAllocator<atlas::Texel>(memory_for(settings, scene, kept.atlas.resolution)));
+  free_memory(kept.texels);
+  return atlas::map_of(kept.atlas, std::move(texels));
 }
 
 Vec2 between(Vec2 a, Vec2 b, float s) { return a * (1 - s) + b * s; }
@@ -180,9 +199,10 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   const bool same_places = boxes.empty();
   // Samples that were moved out of solids begin at their own places again where things have moved.
   if (!same_places) free_memory(kept.texels);
-  atlas::TexelMap map = same_places
-                            ? atlas::map_of(kept.atlas, {kept.texels.begin(), kept.texels.end()})
-                            : atlas::rasterise(scene, kept.atlas);
+  atlas::TexelMap map =
+      same_places
+          ? kept_map(settings, scene, kept)
+          : atlas::rasterise(scene, kept.atlas, memory_for(settings, scene, kept.atlas.resolution));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   TexelLayout layout{std::move(kept.atlas),

@@ -207,8 +207,9 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));
   // 2. The rays that every element gets, and what they hit.
   in.behind = places_behind(sides, scene.elements);
-  light.hits = no_hits(scene.elements.size(), in.layer_count(),
-                       scene.elements.reflectance.get_allocator().memory);
+  const auto& memory = scene.elements.reflectance.get_allocator().memory;
+  light.hits = no_hits(scene.elements.size(), in.layer_count(), memory);
+  if (memory) LUXEL_TRY_STATUS(memory->trouble());
   if (stores.earlier) light.bounced.irradiance = std::move(stores.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(in, light, progress));
   LUXEL_TRY_STATUS(know_all_parts(in));

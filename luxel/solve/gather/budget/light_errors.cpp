@@ -1,5 +1,6 @@
 #include "luxel/solve/gather/budget/light_errors.h"
 
+#include "luxel/base/free_memory.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/error_p95.h"
@@ -35,13 +36,14 @@ Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJu
   }
   auto direct = pooled_variances(scene.atlas, scene.map,
                                  {light.direct.variance, light.direct.split_variance});
-  const auto gathered = pooled_variances(scene.atlas, scene.map,
-                                         {light.bounced.variance, light.bounced.split_variance});
+  auto gathered = pooled_variances(scene.atlas, scene.map,
+                                   {light.bounced.variance, light.bounced.split_variance});
   LightErrors out;
   out.direct = relative_errors(direct, e, light.hits);
   out.gathered = relative_errors(gathered, e, light.hits);
   out.noise_variance = std::move(direct);
   for (size_t i = 0; i < gathered.size(); ++i) out.noise_variance[i] += gathered[i];
+  free_memory(gathered);
   const auto counts = [&](size_t i) { return !is_hidden(light.hits, i); };
   out.all = relative_errors(out.noise_variance, e, light.hits);
   out.noise_p95 = error_p95(out.all, counts);
@@ -51,6 +53,7 @@ Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJu
     const double off = texels.safe * double(luminance(read));
     out.variance[i] += float(off * off);
   }
+  free_memory(out.all);
   out.all = relative_errors(out.variance, e, light.hits);
   out.p95 = error_p95(out.all, counts);
   const double likely = texels.safe > 0 ? texels.likely / texels.safe : 0;

@@ -39,8 +39,7 @@ struct LightErrors {
 /// What light_errors() takes, and for the most part leaves.
 inline constexpr uint64_t kJudgedBytesPerElement =
     bytes_per_entry(&LightErrors::noise_variance, &LightErrors::variance, &LightErrors::direct,
-                    &LightErrors::gathered, &LightErrors::all) +
-    sizeof(float);
+                    &LightErrors::gathered, &LightErrors::all);
 
 /// Errors: the file of hits cannot be read, cancelled.
 Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJudge& light,

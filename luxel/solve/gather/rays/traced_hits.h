@@ -97,7 +97,7 @@ float rays_per_sample(const TracedHits& hits, size_t element);
 void begin_guided(TracedHits& hits, size_t element, int level);
 
 /// Nothing traced yet. `layers`: how many there are; 0: light is not told apart. What rays brought
-/// lies in `memory` where there is one.
+/// lies in `memory` where there is one, if that has room.
 TracedHits no_hits(size_t elements, size_t layers = 0,
                    std::shared_ptr<MappedMemory> memory = nullptr);
 

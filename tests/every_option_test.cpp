@@ -27,7 +27,7 @@ struct Subject {
 /// Files that the options' values name, and those that the commands start from.
 struct Inputs {
   ScratchFolder folder;
-  std::string scene, ies, map, bake, other_bake, lxr, script, bake_json;
+  std::string scene, ies, map, bake, other_bake, part, lxr, script, bake_json;
 };
 
 const Options kSmallGather{{"--resolution", "16"}, {"--samples", "4"}, {"--direct-samples", "2"}};
@@ -125,6 +125,7 @@ Options values_of(const Inputs& in) {
       {"--resume", ""},
       {"--samples", "5"},
       {"lux --samples", "40"},
+      {"--scene", in.scene},
       {"--script", in.script},
       {"--search-path", in.folder.path.string()},
       {"--seed", "7"},
@@ -164,6 +165,7 @@ const std::vector<std::string> kReasons{
     "needs",                // an option that goes with another
     "xcludes",              // "Excludes:" of the help
     "is not in",            // no such camera
+    "is of another bake",   // parts that were made without it
     "only the factors of a closed enclosure",
     "the picture is to end in",
 };
@@ -198,6 +200,8 @@ class SlowEveryOption : public ::testing::TestWithParam<Subject> {
     const std::string scene = in->scene + small;
     ASSERT_EQ(luxel("bake " + scene + "-o " + in->bake + with_profile()).code, 0);
     ASSERT_EQ(luxel("bake " + scene + "-o " + in->other_bake).code, 0);
+    in->part = (folder / "parts" / "part-1-of-1.luxel").string();
+    ASSERT_EQ(luxel("bake " + scene + "--part 1/1 -o " + (folder / "parts").string()).code, 0);
     ASSERT_EQ(
         luxel("relight " + in->scene + " --patches 40 --rays 64 --resolution 8 -o " + in->lxr).code,
         0);
@@ -213,7 +217,7 @@ class SlowEveryOption : public ::testing::TestWithParam<Subject> {
         out.replace(at, word.size(), value);
     };
     put("SCENE", in->scene), put("PROFILE", with_profile()), put("OTHERBAKE", in->other_bake);
-    put("BAKE", in->bake), put("LXR", in->lxr), put("SCRIPT", in->script);
+    put("BAKE", in->bake), put("PART", in->part), put("LXR", in->lxr), put("SCRIPT", in->script);
     put("OUT", (in->folder.path / "out").string());
     return out;
   }
@@ -301,6 +305,7 @@ INSTANTIATE_TEST_SUITE_P(
         Subject{"ProbeABake", "probe SCENE PROFILE --at 0.2,0,0.5 --from BAKE ", {}},
         Subject{"Lux", "lux SCENE PROFILE --from BAKE ", {{"--samples", "32"}}},
         Subject{"Info", "info SCENE", {}}, Subject{"Compare", "compare BAKE OTHERBAKE", {}},
+        Subject{"Merge", "merge PART -o OUT", {}},
         Subject{"FactorsByClosedForms", "factors SCENE -o OUT.csv", {}},
         Subject{"FactorsByRays", "factors SCENE -o OUT.csv --method rays ", {{"--samples", "64"}}},
         Subject{"Relight",

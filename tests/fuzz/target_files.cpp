@@ -11,6 +11,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/import/environment.h"
 #include "luxel/import/ies.h"
+#include "luxel/pipeline/bake/merge_parts.h"
 #include "luxel/pipeline/command/light_script.h"
 #include "luxel/pipeline/reuse/kept_bake.h"
 #include "luxel/pipeline/solver/bake_options.h"
@@ -102,6 +103,12 @@ void open_records(std::span<const std::byte> bytes) {
   if (!is_read(file)) return;
   for (const RecordKey key : file->keys()) file->read_whole(key);
 }
+void open_records_of_others(std::span<const std::byte> bytes) {
+  static const auto scratch = scratch_in_memory();
+  const auto file = RecordFile::open_to_read(scratch.write("a.luxel", std::string(text_of(bytes))));
+  if (!is_read(file)) return;
+  for (const RecordKey key : file->keys()) file->read_whole(key);
+}
 
 }  // namespace
 
@@ -135,8 +142,15 @@ void run_lxr(std::span<const std::byte> input) {
 }
 
 void run_records(std::span<const std::byte> input) {
-  open_records(input);
-  open_records(repaired_records(input));
+  const std::vector<std::byte> repaired = repaired_records(input);
+  open_records(input), open_records_of_others(input);
+  open_records(repaired), open_records_of_others(repaired);
+}
+void run_parts(std::span<const std::byte> input) {
+  static const auto scratch = scratch_in_memory();
+  const std::vector<std::filesystem::path> file{scratch.path / "part.luxel"};
+  if (is_read(RecordFile::create(file.front(), text_of(input))))
+    is_read(pipeline::settings_of_parts(file));
 }
 
 void run_kept_bake(std::span<const std::byte> input) {

@@ -21,6 +21,8 @@ void run_ies(std::span<const std::byte> input);
 void run_lxr(std::span<const std::byte> input);
 /// A file of records, as checkpoints and caches are, as it is and with its digests repaired.
 void run_records(std::span<const std::byte> input);
+/// The text that a part of a bake begins with, which `luxel merge` takes its settings from.
+void run_parts(std::span<const std::byte> input);
 /// A part of a kept bake: the first byte says which.
 void run_kept_bake(std::span<const std::byte> input);
 void run_light_script(std::span<const std::byte> input);

@@ -27,6 +27,7 @@ std::span<const Target> targets() {
       Target{"meshopt", run_meshopt},
       Target{"obj", run_obj},
       Target{"option_texts", run_option_texts},
+      Target{"parts", run_parts},
       Target{"png", run_png},
       Target{"ply", run_ply},
       Target{"records", run_records},

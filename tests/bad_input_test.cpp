@@ -58,7 +58,7 @@ TEST(BadFiles, AreRefusedWithASentence) {
 std::string without_rights() {
   return ::geteuid() == 0 ? "setpriv --reuid 65534 --clear-groups" : "";
 }
-bool can_run_without_rights() { return luxel("--version", without_rights()).code == 0; }
+bool can_run_without_rights() { return luxel("--help", without_rights()).code == 0; }
 
 TEST(BadFiles, ThatMayNotBeReadAreRefused) {
   if (!can_run_without_rights()) GTEST_SKIP() << "nobody else may run the program here";
@@ -273,7 +273,7 @@ TEST(Usage, IsWrongWithCodeTwo) {
     EXPECT_EQ(luxel(arguments).code, 2) << arguments;
   EXPECT_THAT(luxel("paint x").err, HasSubstr("no command 'paint'"));
   EXPECT_THAT(luxel("bake " + box + " -o y --frobnicate").err,
-              HasSubstr("--frobnicate; 'luxel bake --help'"));
+              HasSubstr("'--frobnicate'; 'luxel bake --help'"));
   EXPECT_EQ(luxel("--help").code, 0);
   EXPECT_EQ(luxel("bake --help").code, 0);
   EXPECT_THAT(luxel("--version").out, HasSubstr("luxel"));

@@ -40,6 +40,9 @@ inline CommandResult luxel(const std::string& arguments, const std::string& befo
   return shell(before + " " LUXEL_BINARY " " + arguments);
 }
 
+/// Before a command that asks Vulkan for devices: Mesa's on the processor keeps memory.
+inline constexpr const char* kNoLeakSearch = "ASAN_OPTIONS=detect_leaks=0";
+
 inline std::set<std::string> files_in(const std::filesystem::path& folder) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

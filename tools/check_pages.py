@@ -19,7 +19,7 @@ import sys
 import tempfile
 import urllib.parse
 
-COMMANDS = {"info", "bake", "merge", "render", "compare", "factors", "relight", "probe", "lux", "bench"}
+COMMANDS = {"info", "bake", "merge", "render", "compare", "factors", "relight", "probe", "lux", "bench", "doctor"}
 ALWAYS = {"help", "version"}
 MOST_CHARACTERS, MOST_WORDS = 120, 35
 

@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 PAGE = pathlib.Path(__file__).resolve().parent.parent / "docs" / "options.md"
-COMMANDS = ("info", "bake", "merge", "render", "compare", "factors", "relight", "probe", "lux", "bench")
+COMMANDS = ("info", "bake", "merge", "render", "compare", "factors", "relight", "probe", "lux", "bench", "doctor")
 HEADING = re.compile(r"^(\S.*):$")
 # The meaning begins in column 30; before it there is a single space where the option fills what is before.
 ROW = re.compile(r"^  (-\S.*?)(?:(?:  +| \.\.\. |(?<=^.{29}) )(\S.*))?$")

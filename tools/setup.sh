@@ -24,7 +24,8 @@ packages=(
   zlib1g-dev                         # checksums, PNG
   libvulkan-dev libvulkan-volk-dev glslang-tools # graphics devices
   libglfw3-dev libimgui-dev libfreetype-dev      # the window and its panels
-  libcli11-dev libfmt-dev libexpected-dev
+  libcli11-dev libtomlplusplus-dev   # the command line, luxel.toml
+  libfmt-dev libexpected-dev
   libgtest-dev libgmock-dev          # tests
 )
 
@@ -44,6 +45,7 @@ if [[ ${1:-} == tests ]]; then
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
   command -v Xvfb >/dev/null || wanted+=(xvfb)
+  command -v blender >/dev/null || wanted+=(blender)
   # Bakes on clusters, which luxel has where it is built with them.
   command -v mpirun >/dev/null || wanted+=(openmpi-bin)
   command -v mpicc >/dev/null || wanted+=(libopenmpi-dev)

@@ -5,6 +5,7 @@
 #include "apps/cli/device_option.h"
 #include "apps/cli/together.h"
 #include "luxel/arguments/bake_options.h"
+#include "luxel/arguments/option_file.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"
@@ -99,7 +100,8 @@ void register_bake(CLI::App& app, Action& action) {
   add_processes_per_node(*bake, options->processes_per_node);
   add_common(*bake, options->common);
   bake->callback([options, scene, settings, &action] {
-    if (scene->count() == 0 && settings->count() == 0) throw CLI::RequiredError("SCENE");
+    const bool has_bake = settings->count() > 0 && !is_option_file(options->choice.settings);
+    if (scene->count() == 0 && !has_bake) throw CLI::RequiredError("SCENE");
     action = [options] { return run_together(*options, run_bake); };
   });
 }

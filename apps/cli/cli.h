@@ -25,12 +25,15 @@ enum ExitCode { kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3, kInter
 /// Options that every command has; --threads unless the command has one of its own.
 struct Common {
   int threads = 0;
-  bool quiet = false;
+  bool quiet = false;  ///< neither progress nor warnings nor a summary as text
   bool json = false;
+  bool progress_json = false;     ///< all that stderr gets is JSON; `quiet` is set then, too
   bool silent = false;            ///< no errors, either: another process says them
   std::string* unsaid = nullptr;  ///< gets those that are not said
   bool in_team = false;           ///< started by mpirun, which kills it when another process ends
+  std::string settings{};         ///< --settings, where no other part of the command has it
 };
+/// Adds them as the last options of a command, whose SCENE is there by then.
 void add_common(CLI::App& command, Common& common);
 
 /// --smooth-normals, --search-path, --trust-paths.
@@ -44,14 +47,19 @@ CLI::Validator whole_number(uint64_t most = UINT64_MAX);
 /// "x,y,z".
 Result<Vec3> parse_point(const char* option, const std::string& text);
 
-/// Prints the error's sentence to stderr and, with --json, an object with it to stdout. Returns its
-/// exit code.
+/// Prints the error's sentence to stderr, or an event of --progress-json, and, with --json, an
+/// object with it to stdout. Returns its exit code.
 int report(const Error& error, const Common& common);
 /// Wrong usage, said in the same two places. Returns kUsage.
 int report_usage(const std::string& message, const Common& common);
 /// What no ErrorCode stands for. `code` is its name in {"error": {"code": "internal", "exit_code":
 /// 1, "message": "..."}}. Returns `exit_code`.
 int report(std::string_view code, int exit_code, const std::string& message, const Common& common);
+/// One line of JSON on stderr; docs/guide/ci.md lists the events.
+void print_event(const nlohmann::json& event);
+/// A sentence that is no warning, unless --quiet was given.
+void print_note(const std::string& note, const Common& common);
+
 /// "42 s", "1:05 min", "2:10 h".
 std::string clock_text(double seconds);
 
@@ -70,12 +78,12 @@ int run_and_print(const Common& common,
 
 /// The exit code of a command that ended with `code`: results that standard output did not take are
 /// an error.
-int code_after_output(int code);
+int code_after_output(int code, const Common& common);
 
 /// From here on an overflow of this thread's stack ends the process with a sentence and code 1:
-/// readers of other libraries call themselves for what lies in each other in a file. `json`: with
-/// an object on standard output, too.
-void say_when_the_stack_overflows(bool json);
+/// readers of other libraries call themselves for what lies in each other in a file. It is said as
+/// `messages` are wanted.
+void say_when_the_stack_overflows(const Common& messages);
 
 /// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
 using Action = std::function<int()>;
@@ -89,5 +97,6 @@ void register_compare(CLI::App& app, Action& action);
 void register_factors(CLI::App& app, Action& action);
 void register_relight(CLI::App& app, Action& action);
 void register_bench(CLI::App& app, Action& action);
+void register_doctor(CLI::App& app, Action& action);
 
 }  // namespace luxel::cli

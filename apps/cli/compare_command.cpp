@@ -90,8 +90,9 @@ int run_compare(const CompareOptions& options) {
     return pipeline::holds(limit, compared);
   });
   if (passed) return kDone;
-  std::fprintf(stderr, "luxel: %s\n", verdict.c_str());
-  return kBadInput;
+  Common said = options.common;
+  said.json = false;  // the measures are there already
+  return report("too_different", kBadInput, verdict, said);
 }
 
 }  // namespace

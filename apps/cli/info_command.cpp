@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/machine.h"
 #include "luxel/gpu/device.h"
 #include "luxel/import/import.h"
 #include "luxel/scene/scene.h"
@@ -47,21 +48,6 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
           {"bounds", {vector_json(box.lower), vector_json(box.upper)}},
           {"has_texcoord_1", uv1},
           {"warnings", warnings}};
-}
-
-const char* kind_of(VkPhysicalDeviceType type) {
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return "graphics card";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return "graphics of the processor";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return "virtual graphics card";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-      return "software on the processor";
-    default:
-      return "other";
-  }
 }
 
 /// Without Vulkan, or without a device, the list is empty: luxel needs none.

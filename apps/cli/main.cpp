@@ -8,84 +8,141 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 
+#include <fmt/ranges.h>
+
 #include "apps/cli/cli.h"
+#include "apps/cli/machine.h"
+#include "luxel/arguments/near_miss.h"
+#include "luxel/arguments/option_file.h"
 #include "luxel/cluster/mpi.h"
-#include "luxel/pipeline/settings/version.h"
 
 namespace {
 
-/// One sentence, and where the options are listed.
-std::string usage_message(const CLI::App& app, const CLI::Error& error) {
+using luxel::Status;
+using Arguments = std::vector<std::string>;  // without the program's name
+
+/// One sentence, and where the options are listed. A misspelt option is the reason for whatever
+/// else is missing.
+std::string usage_message(const CLI::App& app, const CLI::Error& error,
+                          const Arguments& arguments) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
-  const std::string command = chosen.empty() ? "luxel" : "luxel " + chosen.front()->get_name();
-  std::string text = error.what();
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const std::string name = chosen.empty() ? "luxel" : "luxel " + command.get_name();
+  std::string text = luxel::arguments::about_unknown_option(command, name, arguments);
+  if (text.empty()) text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return fmt::format("{}; '{} --help' lists what there is", text, command);
+  return fmt::format("{}{} '{} --help' lists what there is", text, text.ends_with('?') ? "" : ";",
+                     name);
 }
 
-/// "luxel 0.1.0, with Open MPI 4.1.4".
-std::string version_text() {
-  const std::string mpi = luxel::cluster::mpi_version();
-  return fmt::format("luxel {}, {}", luxel::pipeline::kVersion,
-                     mpi.empty() ? "without MPI" : "with " + mpi);
+/// A sentence about the first argument when it should be a command and is none.
+std::string about_unknown_command(const CLI::App& app, const Arguments& arguments) {
+  if (arguments.empty() || arguments[0].starts_with('-')) return {};
+  Arguments names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (std::ranges::find(names, arguments[0]) != names.end()) return {};
+  const std::string meant = luxel::arguments::did_you_mean(arguments[0], names);
+  return fmt::format("there is no command '{}'{}{} 'luxel --help' lists what there is",
+                     arguments[0], meant, meant.empty() ? ";" : "");
 }
 
-bool is_command(const CLI::App& app, const std::string& name) {
-  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
-  return std::any_of(commands.begin(), commands.end(),
-                     [&](const CLI::App* command) { return command->get_name() == name; });
+/// How messages are wanted, where the arguments make no sense as a whole.
+luxel::cli::Common messages_in(int argc, char** argv) {
+  const auto has = [&](std::string_view flag) {
+    return std::any_of(argv, argv + argc, [&](const char* argument) { return flag == argument; });
+  };
+  const bool events = has("--progress-json");
+  return {.quiet = events || has("--quiet"), .json = has("--json"), .progress_json = events};
 }
 
-/// The first argument when it should be a command and is none.
-std::string unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-' || is_command(app, argv[1])) return {};
-  return argv[1];
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 a file, a scene or a setting is wrong; 2 the command line is wrong;\n"
+    "3 not enough memory, disk or time; 130 stopped by Ctrl-C or SIGTERM.";
+
+/// All commands. What was asked for goes to `action`.
+std::unique_ptr<CLI::App> make_app(luxel::cli::Action& action) {
+  using namespace luxel::cli;
+  auto app = std::make_unique<CLI::App>(
+      "luxel: diffuse global illumination. A scene in, lightmaps out.\n"
+      "Try: luxel bake SCENE -o FOLDER",
+      "luxel");
+  app->set_version_flag("--version", [] { return luxel::cli::version_text(); });
+  app->require_subcommand(1);
+  app->footer(kExitCodes);
+  register_bake(*app, action);
+  register_merge(*app, action);
+  register_render(*app, action);
+  register_compare(*app, action);
+  register_info(*app, action);
+  register_factors(*app, action);
+  register_probe(*app, action);
+  register_lux(*app, action);
+  register_relight(*app, action);
+  register_bench(*app, action);
+  register_doctor(*app, action);
+  return app;
 }
 
-/// Whether --json was asked for, where the arguments make no sense as a whole.
-bool wants_json(int argc, char** argv) {
-  return std::any_of(argv, argv + argc,
-                     [](const char* argument) { return std::string_view(argument) == "--json"; });
+void parse(CLI::App& app, const Arguments& arguments) {
+  app.parse(Arguments(arguments.rbegin(), arguments.rend()));  // CLI11 takes the last one first
+}
+
+/// The arguments with those of a file of options, before the user's own.
+Arguments joined(const Arguments& given, const std::string& command, const Arguments& options) {
+  Arguments out = given;
+  out.insert(std::ranges::find(out, command) + 1, options.begin(), options.end());
+  return out;
+}
+
+/// Parses once more where a file of options goes with the command. Errors: those of the file.
+Status add_option_file(std::unique_ptr<CLI::App>& app, luxel::cli::Action& action,
+                       const Arguments& given, const luxel::cli::Common& messages) {
+  const CLI::App& command = *app->get_subcommands().front();
+  const auto file = luxel::arguments::option_file_of(command);
+  if (!file) return {};
+  const std::string name = command.get_name(), path = file->path.string();
+  LUXEL_TRY(const Arguments options, luxel::arguments::options_in(*file, command, name));
+  if (options.empty()) return {};
+  // Of processes that work together each reads it.
+  if (luxel::cluster::processes_started() == 1)
+    luxel::cli::print_note(fmt::format("options from {}: {}", path, fmt::join(options, " ")),
+                           messages);
+  app = make_app(action);
+  try {
+    parse(*app, joined(given, name, options));
+    return {};
+  } catch (const CLI::ParseError& error) {
+    return luxel::fail(luxel::ErrorCode::bad_setting, "{}: {}; --settings none reads no file", path,
+                       error.what());
+  }
 }
 
 int run(int argc, char** argv) {
   using namespace luxel::cli;
-  CLI::App app{
-      "luxel: diffuse global illumination. A scene in, lightmaps out.\n"
-      "Try: luxel bake SCENE -o FOLDER",
-      "luxel"};
-  app.set_version_flag("--version", version_text());
-  app.require_subcommand(1);
+  const Arguments given(argv + std::min(argc, 1), argv + argc);
+  const Common messages = messages_in(argc, argv);
   Action action;
-  register_bake(app, action);
-  register_merge(app, action);
-  register_render(app, action);
-  register_compare(app, action);
-  register_info(app, action);
-  register_factors(app, action);
-  register_probe(app, action);
-  register_lux(app, action);
-  register_relight(app, action);
-  register_bench(app, action);
-  if (argc == 1) {
-    std::fputs(app.help().c_str(), stderr);
+  std::unique_ptr<CLI::App> app = make_app(action);
+  if (given.empty()) {
+    std::fputs(app->help().c_str(), stderr);
     return kUsage;
   }
-  if (const std::string name = unknown_command(app, argc, argv); !name.empty()) {
-    return report_usage(
-        fmt::format("there is no command '{}'; 'luxel --help' lists what there is", name),
-        {.json = wants_json(argc, argv)});
-  }
+  if (const std::string unknown = about_unknown_command(*app, given); !unknown.empty())
+    return report_usage(unknown, messages);
   try {
-    app.parse(argc, argv);
+    parse(*app, given);
   } catch (const CLI::ParseError& error) {
     // Help and version end with code 0; everything else is wrong usage.
-    if (error.get_exit_code() == 0) return code_after_output(app.exit(error));
-    return report_usage(usage_message(app, error), {.json = wants_json(argc, argv)});
+    if (error.get_exit_code() == 0) return code_after_output(app->exit(error), messages);
+    return report_usage(usage_message(*app, error, given), messages);
   }
-  return code_after_output(action());
+  if (const Status added = add_option_file(app, action, given, messages); !added)
+    return report(added.error(), messages);
+  return code_after_output(action(), messages);
 }
 
 /// A standard stream that is closed would give its number to the next file that is opened, and what
@@ -131,17 +188,17 @@ int main(int argc, char** argv) {
   keep_standard_streams();
   std::set_new_handler(note_end_of_memory);
   std::set_terminate(end_without_memory);
-  luxel::cli::say_when_the_stack_overflows(wants_json(argc, argv));
+  luxel::cli::say_when_the_stack_overflows(messages_in(argc, argv));
   // A limit on the size of files is an error of the write like any other.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
     return luxel::cli::report({luxel::ErrorCode::out_of_memory, kNoMemory},
-                              {.json = wants_json(argc, argv)});
+                              messages_in(argc, argv));
   } catch (const std::exception& error) {
     return luxel::cli::report("internal", luxel::cli::kBadInput,
                               fmt::format("internal error: {}; please report this", error.what()),
-                              {.json = wants_json(argc, argv)});
+                              messages_in(argc, argv));
   }
 }

@@ -16,7 +16,7 @@ namespace {
 
 /// The end of the stack, towards which it grows. A kernel keeps 1 MiB free below it.
 uintptr_t end_of_stack = 0;
-bool json_wanted = false;
+bool json_wanted = false, events_wanted = false;
 constexpr uintptr_t kNear = 2 << 20;
 
 void print(int stream, std::string_view text) {
@@ -34,7 +34,10 @@ void on_fault(int signal, siginfo_t* info, void*) {
   }
 #define LUXEL_STACK_IS_FULL \
   "the stack is full; the parts of a file lie in each other too deep, or in circles"
-  print(STDERR_FILENO, "luxel: " LUXEL_STACK_IS_FULL "\n");
+  print(STDERR_FILENO, events_wanted
+                           ? "{\"event\":\"error\",\"code\":\"bad_input\",\"exit_code\":1,"
+                             "\"message\":\"" LUXEL_STACK_IS_FULL "\"}\n"
+                           : "luxel: " LUXEL_STACK_IS_FULL "\n");
   if (json_wanted)
     print(STDOUT_FILENO,
           "{\"error\": {\"code\": \"bad_input\", \"exit_code\": 1, \"message\": "
@@ -44,8 +47,8 @@ void on_fault(int signal, siginfo_t* info, void*) {
 
 }  // namespace
 
-void say_when_the_stack_overflows(bool json) {
-  json_wanted = json;
+void say_when_the_stack_overflows(const Common& messages) {
+  json_wanted = messages.json, events_wanted = messages.progress_json;
 #ifndef __SANITIZE_ADDRESS__  // it has a handler of its own, which says more
   pthread_attr_t attributes;
   if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;

@@ -46,11 +46,12 @@ int run_together(const Common& common, int processes_per_node,
       cluster::join_processes(std::string("luxel ") + pipeline::kVersion, processes_per_node);
   if (!joined) return report(joined.error(), common);
   const bool is_first = joined->works && (!joined->team || joined->team->rank() == 0);
-  if (is_first && !common.quiet) std::fprintf(stderr, "%s\n", about_processes(*joined).c_str());
+  if (is_first) print_note(about_processes(*joined), common);
   Common own = common;
   own.in_team = true;
   std::string unsaid;
-  if (!is_first) own.quiet = own.silent = true, own.json = false, own.unsaid = &unsaid;
+  if (!is_first)
+    own.quiet = own.silent = true, own.json = own.progress_json = false, own.unsaid = &unsaid;
   const int code = joined->works ? run(own, joined->team.get()) : kDone;
   // What went wrong before the work began, or after it; else the others know.
   if (code != kDone && joined->team) joined->team->give_up({ErrorCode::io, unsaid});

@@ -13,6 +13,7 @@
 #include "apps/view/remembered.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
+#include "luxel/arguments/option_file.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
@@ -111,6 +112,11 @@ Status check_relight(const Options& options) {
 /// Errors: options of a bake beside a bake that is there, or a second bake beside none.
 Status check_choice(const Options& options) {
   const arguments::BakeChoice& choice = options.choice;
+  if (arguments::is_option_file(choice.settings))
+    return fail(
+        ErrorCode::bad_setting,
+        "--settings {} is for luxel bake; luxel-view takes the bake.json of an earlier bake",
+        choice.settings.string());
   // Options are for what will be dropped.
   if (options.subject.empty() && options.beside.empty() && options.inside.empty()) return {};
   if (!options.beside.empty() && is_scene(options.subject))

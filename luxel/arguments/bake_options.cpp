@@ -3,6 +3,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "luxel/arguments/option_file.h"
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
@@ -45,9 +46,10 @@ CLI::Option* add_bake_settings(CLI::App& command, BakeChoice& choice) {
   CLI::Option* settings =
       command
           .add_option("--settings", choice.settings,
-                      "Take scene and settings from the bake.json of an earlier bake; options "
-                      "given beside it win")
-          ->type_name("FILE.json");
+                      "Take scene and settings from the bake.json of an earlier bake, or options "
+                      "from a .toml file (default: luxel.toml beside the scene; none: no file); "
+                      "options given beside it win")
+          ->type_name("FILE|none");
   command
       .add_option("--solver", choice.solver, "How light is computed: " + pipeline::solver_names())
       ->type_name("NAME")
@@ -65,7 +67,9 @@ void add_bake_table(CLI::App& bake, Given& given) {
 
 Result<pipeline::BakeSettings> settings_of(const BakeChoice& options) {
   pipeline::BakeSettings s;
-  if (!options.settings.empty()) LUXEL_TRY_STATUS(pipeline::read_settings(options.settings, s));
+  // What an option file has came in as arguments.
+  const bool reads_bake = !options.settings.empty() && !is_option_file(options.settings);
+  if (reads_bake) LUXEL_TRY_STATUS(pipeline::read_settings(options.settings, s));
   if (options.given.has("--ies")) s.outside.ies.clear();  // those given win
   if (!options.scene.empty()) s.scene = options.scene;
   if (!options.solver.empty()) s.solver = options.solver;
@@ -78,7 +82,7 @@ Result<pipeline::BakeSettings> settings_of(const BakeChoice& options) {
   }
   s.samples_given = options.given.has("--samples");
   // A file of settings has its numbers.
-  const bool by_quality = options.given.has("--quality") || options.settings.empty();
+  const bool by_quality = options.given.has("--quality") || !reads_bake;
   if (solver->can.quality && by_quality)
     pipeline::set_quality(
         s.quality == pipeline::Quality::none ? pipeline::Quality::good : s.quality,

@@ -20,6 +20,12 @@ size_t character_start(std::string_view text, size_t at) {
   return at;
 }
 
+/// A terminal would obey it.
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+}
+
 void append_short(std::string_view word, std::string& out) {
   if (word.size() <= kLongestWord) {
     out += word;
@@ -32,8 +38,9 @@ void append_short(std::string_view word, std::string& out) {
 
 }  // namespace
 
-std::string short_message(const std::string& text, size_t most_bytes) {
-  std::string out;
+std::string short_message(const std::string& given, size_t most_bytes) {
+  std::string text = given, out;
+  std::ranges::replace_if(text, is_control, '?');
   for (size_t at = 0; at < text.size() && out.size() <= most_bytes;) {
     const size_t end = std::min(text.find_first_of(" \n", at), text.size());
     append_short(std::string_view(text).substr(at, end - at), out);

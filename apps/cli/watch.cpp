@@ -1,0 +1,246 @@
+// Work whose progress is shown on stderr while it runs, and that Ctrl-C stops.
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include <unistd.h>
+
+#include "apps/cli/cli.h"
+#include "apps/cli/terminal.h"
+#include "luxel/base/output_folder.h"
+
+namespace luxel::cli {
+namespace {
+
+constexpr const char* kStopped = "stopped by the user";
+
+std::string stopped_text(const Progress& progress) {
+  const std::string way_on = progress.way_on();
+  return way_on.empty() ? kStopped : fmt::format("{}; {}", kStopped, way_on);
+}
+
+/// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
+/// finished stage.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const Common& common)
+      : quiet_(common.quiet), says_way_on_(common.in_team), terminal_(rewrites_lines()) {}
+
+  void show(const Progress& progress) {
+    const Progress::Snapshot now = progress.snapshot();
+    print_notes(progress);
+    if (quiet_ || now.stage_index < 0) return;
+    say_way_on(progress);
+    print_finished(progress, size_t(now.stage_index));
+    if (now.stage == "trace rays") rays_ = now.total - now.skipped;
+    if (!terminal_) return;
+    std::string line = now.stage;
+    if (now.total > 0 && now.stage_seconds > 0) {
+      line += fmt::format("  {:3.0f} %", 100 * double(now.done) / double(now.total));
+      // What was there already has taken no time.
+      const double done = double(now.done - now.skipped), total = double(now.total - now.skipped);
+      const double share = total > 0 ? done / total : 0;
+      if (now.stage == "trace rays")
+        line += fmt::format("  {:.1f} Mrays/s", done * 1e-6 / now.stage_seconds);
+      // Long work has an estimate early, too.
+      const bool known = share > 0.02 || (share > 0 && now.stage_seconds > 3);
+      if (known && now.seconds_left < 0)
+        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left of this";
+    }
+    if (now.seconds_left >= 0) line += "  " + clock_text(now.seconds_left) + " left";
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    std::fflush(stderr);
+  }
+
+  /// The work has ended: shows the stages it has finished. After an error the last one is not.
+  void end(const Progress& progress, bool succeeded) {
+    print_notes(progress);
+    if (quiet_) return;
+    const size_t begun = progress.stages().size();
+    print_finished(progress, succeeded || begun == 0 ? begun : begun - 1);
+    if (terminal_) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  /// As soon as there is a way on: when another process ends, mpirun passes nothing on any more,
+  /// and kills this one.
+  void say_way_on(const Progress& progress) {
+    const std::string way_on = says_way_on_ ? progress.way_on() : std::string();
+    if (way_on.empty()) return;
+    says_way_on_ = false;
+    std::fprintf(stderr, "%sfinished parts are kept from now on: %s\n", terminal_ ? "\r\033[K" : "",
+                 way_on.c_str());
+  }
+  void print_notes(const Progress& progress) {
+    for (const std::string& note : progress.notes(notes_)) {
+      if (!quiet_) std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", note.c_str());
+      ++notes_;
+    }
+  }
+  void print_finished(const Progress& progress, size_t count) {
+    const std::vector<Stage> stages = progress.stages();
+    for (; printed_ < count; ++printed_) {
+      const Stage& stage = stages[printed_];
+      std::string line = fmt::format("{:<18}{:7.2f} s", stage.name, stage.seconds);
+      if (stage.name == "trace rays" && rays_ > 0 && stage.seconds > 0)
+        line += fmt::format("   {:.1f} Mrays/s", double(rays_) * 1e-6 / stage.seconds);
+      std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", line.c_str());
+    }
+  }
+
+  bool quiet_, says_way_on_, terminal_;
+  size_t printed_ = 0, notes_ = 0;
+  uint64_t rays_ = 0;
+};
+
+/// Shows stages as lines of JSON: "stage" for each that has ended, "progress" while one runs.
+class ProgressEvents {
+ public:
+  void show(const Progress& progress) {
+    const Progress::Snapshot now = progress.snapshot();
+    print_notes(progress);
+    if (now.stage_index < 0) return;
+    print_way_on(progress);
+    print_finished(progress, size_t(now.stage_index));
+    nlohmann::json event{{"event", "progress"},
+                         {"stage", now.stage},
+                         {"done", now.done},
+                         {"total", now.total},
+                         {"share", nullptr},
+                         {"seconds_left", nullptr},
+                         {"stage_seconds", now.stage_seconds}};
+    if (now.total > 0) event["share"] = double(now.done) / double(now.total);
+    if (now.seconds_left >= 0) event["seconds_left"] = now.seconds_left;
+    print_event(event);
+  }
+  void end(const Progress& progress, bool succeeded) {
+    print_notes(progress);
+    const size_t begun = progress.stages().size();
+    print_finished(progress, succeeded || begun == 0 ? begun : begun - 1);
+  }
+
+ private:
+  void print_notes(const Progress& progress) {
+    for (const std::string& note : progress.notes(notes_)) {
+      print_event({{"event", "note"}, {"message", note}});
+      ++notes_;
+    }
+  }
+  void print_way_on(const Progress& progress) {
+    const std::string way_on = progress.way_on();
+    if (way_on == way_on_) return;
+    way_on_ = way_on;
+    print_event({{"event", "resumable"}, {"message", way_on}});
+  }
+  void print_finished(const Progress& progress, size_t count) {
+    const std::vector<Stage> stages = progress.stages();
+    for (; printed_ < count; ++printed_)
+      print_event({{"event", "stage"},
+                   {"stage", stages[printed_].name},
+                   {"seconds", stages[printed_].seconds}});
+  }
+
+  size_t printed_ = 0, notes_ = 0;
+  std::string way_on_;
+};
+
+sigset_t stop_signals() {
+  sigset_t stop;
+  sigemptyset(&stop);
+  sigaddset(&stop, SIGINT);
+  sigaddset(&stop, SIGTERM);
+  return stop;
+}
+
+/// Waits for Ctrl-C at most a tenth of a second. True when it came.
+bool stop_requested() {
+  const sigset_t stop = stop_signals();
+  const timespec patience{0, 100'000'000};
+  return sigtimedwait(&stop, nullptr, &patience) > 0;
+}
+
+/// How the work stands: the worker writes it, the watcher waits for it.
+enum class Work { running, succeeded, failed };
+
+template <class Shown>
+void watch(Progress& progress, const std::atomic<Work>& work, const Common& common, Shown line) {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point asked{};
+  while (work == Work::running) {
+    if (stop_requested()) {
+      if (asked == Clock::time_point{}) asked = Clock::now();
+      progress.request_cancel();
+    }
+    line.show(progress);
+    // Reading a file cannot be asked to stop; writing may finish, so that all files are there.
+    const bool late =
+        asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(700);
+    if (late && progress.snapshot().stage != kWriteStage) {
+      line.end(progress, false);
+      progress.clean_up();
+      report({ErrorCode::cancelled, stopped_text(progress)}, common);
+      std::fflush(stdout);
+      ::_exit(kInterrupted);
+    }
+  }
+  line.end(progress, work == Work::succeeded);
+}
+
+}  // namespace
+
+std::string clock_text(double seconds) {
+  const long s = long(seconds + 0.5);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
+}
+
+Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work) {
+  // Only the watcher takes Ctrl-C; the threads that the work starts inherit this mask.
+  const sigset_t stop = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
+  Progress progress;
+  std::atomic<Work> state{Work::running};
+  std::thread watcher([&] {
+    common.progress_json ? watch(progress, state, common, ProgressEvents())
+                         : watch(progress, state, common, ProgressLine(common));
+  });
+  const auto end = [&](Work how) {
+    state = how;
+    pthread_kill(watcher.native_handle(), SIGTERM);  // so that it looks at once
+    watcher.join();
+  };
+  try {
+    Status done = work(progress);
+    if (done) progress.finish();
+    end(done ? Work::succeeded : Work::failed);
+    // Whichever stage was stopped: the user knows why.
+    if (!done && done.error().code == ErrorCode::cancelled)
+      return fail(ErrorCode::cancelled, "{}", stopped_text(progress));
+    return done;
+  } catch (...) {
+    end(Work::failed);
+    throw;
+  }
+}
+
+int run_and_print(const Common& common,
+                  const std::function<Result<nlohmann::json>(Progress&)>& work,
+                  const std::function<void(const nlohmann::json&)>& summary) {
+  nlohmann::json json;
+  const Status done = run_with_progress(common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(json, work(progress));
+    return {};
+  });
+  if (!done) return report(done.error(), common);
+  print_warnings(json.value("warnings", std::vector<std::string>()), common);
+  if (common.json)
+    std::printf("%s\n", json.dump(2).c_str());
+  else if (!common.quiet)
+    summary(json);
+  return kDone;
+}
+
+}  // namespace luxel::cli

@@ -107,7 +107,7 @@ Status add_option_file(std::unique_ptr<CLI::App>& app, luxel::cli::Action& actio
   const std::string name = command.get_name(), path = file->path.string();
   LUXEL_TRY(const Arguments options, luxel::arguments::options_in(*file, command, name));
   if (options.empty()) return {};
-  // Of processes that work together each reads it.
+  // Each of several processes that work together reads the file.
   if (luxel::cluster::processes_started() == 1)
     luxel::cli::print_note(fmt::format("options from {}: {}", path, fmt::join(options, " ")),
                            messages);

@@ -8,6 +8,7 @@
 
 #include "luxel/arguments/near_miss.h"
 #include "luxel/base/file.h"
+#include "luxel/base/real_path.h"
 #include "luxel/pipeline/settings/outside_light.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
@@ -109,26 +110,13 @@ bool is_looked_at(const CLI::App& command, std::string_view flag) {
   return !solver || !is_of_bakes || pipeline::option_of(*solver, flag);
 }
 
-/// With all links followed; empty where there is nothing.
-fs::path real_path(const fs::path& path) {
-  std::error_code failed;
-  fs::path real = fs::canonical(path.empty() ? fs::path(".") : path, failed);
-  return failed ? fs::path() : real;
-}
-
-bool lies_below(const fs::path& real, const fs::path& real_folder) {
-  const auto [in_folder, in_path] =
-      std::mismatch(real_folder.begin(), real_folder.end(), real.begin(), real.end());
-  return !real_folder.empty() && in_folder == real_folder.end();
-}
-
 /// A path of the file as the command gets it: what was looked at here is what is opened then.
 Result<std::string> located(const Reader& in, const toml::node& node, const fs::path& stated) {
   const fs::path folder = in.file.path.parent_path();
   if (in.file.is_named) return (folder / stated).string();
   const fs::path real = real_path(folder / stated);
   if (real.empty()) return in.wrong(node, "there is no {}", (folder / stated).string());
-  if (!lies_below(real, real_path(folder)))
+  if (real != real_path(folder) && !lies_below(real, folder))
     return in.wrong(node,
                     "{} lies outside of this file's folder; copy it there, or give --settings {}",
                     stated.string(), in.file.path.string());

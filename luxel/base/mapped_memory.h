@@ -38,7 +38,7 @@ class MappedMemory {
   bool holds(const void* place) const;
   /// Lets go of all pages. The files keep what they hold: who looks at them gets them back.
   void let_go() const;
-  /// Of all files that were made.
+  /// The size of all files that were made.
   uint64_t bytes_made() const;
   /// Errors: those of the first file that could not be made: the disk is full, the folder cannot be
   /// written to.

@@ -2,26 +2,13 @@
 
 #include <algorithm>
 
+#include "luxel/base/real_path.h"
 #include "luxel/base/short_message.h"
 
 namespace luxel::import {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// With every symbolic link followed; empty where there is nothing.
-fs::path real_path(const fs::path& path) {
-  std::error_code failed;
-  fs::path real = fs::canonical(path.empty() ? fs::path(".") : path, failed);
-  return failed ? fs::path() : real;
-}
-
-bool lies_below(const fs::path& file, const fs::path& folder) {
-  const fs::path real = real_path(folder);
-  const auto [in_folder, in_file] =
-      std::mismatch(real.begin(), real.end(), file.begin(), file.end());
-  return !real.empty() && in_folder == real.end() && in_file != file.end();
-}
 
 bool is_allowed(const SceneFiles& files, const fs::path& file) {
   return files.trust_paths || lies_below(file, *files.folder) ||

@@ -9,8 +9,10 @@ Each process has one thread. Two tables are printed:
   one process is the efficiency by processor time. It holds the work that every process repeats, and
   what it takes to send and receive. More processes than cores have no wall clock of their own.
 - a model of P nodes with one process each: T = serial + shared / P + exchanges * latency * log2(P) +
-  bytes / bandwidth. `serial` are the stages below, as one process takes them; bytes and exchanges are
-  those that two processes had: every node receives about all of them, whatever P is.
+  bytes / bandwidth. `serial` are the stages that one process does alone, and what is serial of those
+  that are shared in part: serial + shared takes t1 with one process, serial + shared / 2 takes t2 with
+  two, so it is 2 t2 - t1. Bytes and exchanges are those that two processes had: every node receives
+  about all of them, whatever P is.
 """
 
 import argparse
@@ -24,7 +26,9 @@ import tempfile
 import time
 
 # Stages that the first process does alone, or every process for itself.
-SERIAL = {"import", "charts", "packing", "build ray tracer", "seams", "draw", "write files"}
+SERIAL = {"import", "charts", "build ray tracer", "draw"}
+# Stages of which a part is shared out: rasterising, the rays of seams, compressing lightmap.exr.
+PARTLY_SERIAL = {"packing", "seams", "write files"}
 # Name, bytes per second, seconds: what a node gets of 10 Gbit/s by TCP, and of 200 Gbit/s.
 NETWORKS = [("10 GbE", 1.1e9, 50e-6), ("InfiniBand HDR", 2.2e10, 2e-6)]
 
@@ -47,22 +51,35 @@ def run(luxel, processes, arguments, folder):
         return json.load(file), wall, cpu
 
 
-def predicted(stages, team, nodes, bandwidth, latency):
-    """Seconds on so many nodes."""
-    serial = sum(s for name, s in stages.items() if name in SERIAL)
-    shared = sum(s for name, s in stages.items() if name not in SERIAL)
+def serial_parts(one, two):
+    """Seconds of each stage that do not become fewer with more processes, from the seconds of the
+    stages of one process and of two."""
+    parts = {name: s for name, s in one.items() if name in SERIAL}
+    for name in PARTLY_SERIAL & set(one):
+        parts[name] = min(one[name], max(0.0, 2 * two.get(name, one[name]) - one[name]))
+    return parts
+
+
+def predicted(total, serial, team, nodes, bandwidth, latency):
+    """Seconds on so many nodes, from those on one."""
     if nodes == 1:
-        return serial + shared
+        return total
     talk = team["exchanges"] * latency * math.log2(nodes) + team["bytes"] / bandwidth
-    return serial + shared / nodes + talk
+    return serial + (total - serial) / nodes + talk
 
 
 def self_test():
-    stages = {"packing": 10.0, "trace rays": 990.0}
+    parts = serial_parts({"import": 3.0, "packing": 10.0, "seams": 4.0, "trace rays": 990.0},
+                         {"import": 5.0, "packing": 7.0, "seams": 1.5, "trace rays": 500.0})
+    assert parts == {"import": 3.0, "packing": 4.0, "seams": 0.0}, parts
     team = {"exchanges": 0, "bytes": 0}
-    assert predicted(stages, team, 1, 1, 1) == 1000
-    assert predicted(stages, team, 99, 1, 1) == 20
-    assert predicted(stages, {"exchanges": 100, "bytes": 5e9}, 8, 1e9, 1e-2) == 10 + 990 / 8 + 3 + 5
+    assert predicted(1000, 10, team, 1, 1, 1) == 1000
+    assert predicted(1000, 10, team, 99, 1, 1) == 20
+    assert predicted(1000, 10, {"exchanges": 100, "bytes": 5e9}, 8, 1e9, 1e-2) == 10 + 990 / 8 + 3 + 5
+
+
+def stages_of(report):
+    return {name: seconds for name, seconds in report["seconds"].items() if name != "total"}
 
 
 def main():
@@ -96,18 +113,22 @@ def main():
         team = report["team"] or {"exchanges": 0, "bytes": 0}
         print(f"| {n} | {wall:.1f} | {cpu:.1f} | {100 * found[1][2] / cpu:.0f} % | "
               f"{team['exchanges']} | {team['bytes'] / 1e6:.0f}M |")
-    stages = {k: v for k, v in found[1][0]["seconds"].items() if k != "total"}
+    stages = stages_of(found[1][0])
     team = found[2][0]["team"]
-    serial = {k: v for k, v in stages.items() if k in SERIAL}
-    print("\nSerial stages: " + ", ".join(f"{k} {v:.2f} s" for k, v in serial.items()) +
-          f"; {sum(serial.values()):.1f} s of {sum(stages.values()):.1f} s.\n")
+    serial = serial_parts(stages, stages_of(found[2][0]))
+    total, alone = sum(stages.values()), sum(serial.values())
+    print("\nSerial: " + ", ".join(f"{k} {v:.2f} s" for k, v in serial.items()) +
+          f"; {alone:.1f} s of {total:.1f} s.\n")
+    print("Stages of one process and of two [s]: " +
+          ", ".join(f"{k} {v:.2f} and {stages_of(found[2][0]).get(k, 0):.2f}"
+                    for k, v in stages.items()) + ".\n")
     print("| nodes | " + " | ".join(f"{name} [s] | efficiency" for name, _, _ in NETWORKS) + " |")
     print("|---|" + "---|---|" * len(NETWORKS))
     for nodes in (8, 64, 1024):
         cells = []
         for _, bandwidth, latency in NETWORKS:
-            t = predicted(stages, team, nodes, bandwidth, latency)
-            cells += [f"{t:.1f}", f"{100 * sum(stages.values()) / nodes / t:.0f} %"]
+            t = predicted(total, alone, team, nodes, bandwidth, latency)
+            cells += [f"{t:.1f}", f"{100 * total / nodes / t:.0f} %"]
         print(f"| {nodes} | " + " | ".join(cells) + " |")
 
 

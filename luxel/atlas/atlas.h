@@ -8,6 +8,7 @@
 #include "luxel/base/mapped_memory.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::atlas {
@@ -98,6 +99,10 @@ Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, P
 /// in `memory` where there is one, if they are many and it has room.
 TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas,
                    std::shared_ptr<MappedMemory> memory = nullptr);
+/// rasterise() by the members of a team, some rows each. All get the whole map. Without a team this
+/// process makes it. Errors: cancelled, another member gives up.
+Result<TexelMap> rasterise_together(const scene::Scene& scene, const Atlas& atlas, Team* team,
+                                    std::shared_ptr<MappedMemory> memory, Progress& progress);
 /// The map of texels that lie on the atlas.
 TexelMap map_of(const Atlas& atlas, MappedVector<Texel> texels);
 

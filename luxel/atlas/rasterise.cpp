@@ -5,6 +5,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/drawn_triangle.h"
 
 namespace luxel::atlas {
@@ -144,17 +145,15 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
   return texels;
 }
 
-}  // namespace
+std::vector<Texel> texels_of_band(const Atlas& atlas, const std::vector<uint32_t>& bin,
+                                  size_t band) {
+  const Span rows{int(band) * kBandRows, std::min(atlas.resolution, int(band + 1) * kBandRows)};
+  return band_texels(atlas, find_owners(atlas, bin, rows), rows);
+}
 
-TexelMap rasterise(const scene::Scene&, const Atlas& atlas, std::shared_ptr<MappedMemory> memory) {
-  const std::vector<std::vector<uint32_t>> bins = bin_triangles(atlas);
-  std::vector<std::vector<Texel>> bands(bins.size());
-  parallel_for(bins.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t b = begin; b < end; ++b) {
-      const Span rows{int(b) * kBandRows, std::min(atlas.resolution, int(b + 1) * kBandRows)};
-      bands[b] = band_texels(atlas, find_owners(atlas, bins[b], rows), rows);
-    }
-  });
+/// All bands, which are freed.
+MappedVector<Texel> joined(std::vector<std::vector<Texel>> bands,
+                           std::shared_ptr<MappedMemory> memory) {
   MappedVector<Texel> texels(std::move(memory));
   size_t count = 0;
   for (const auto& band : bands) count += band.size();
@@ -163,7 +162,75 @@ TexelMap rasterise(const scene::Scene&, const Atlas& atlas, std::shared_ptr<Mapp
     texels.insert(texels.end(), band.begin(), band.end());
     free_memory(band);
   }
-  return map_of(atlas, std::move(texels));
+  return texels;
+}
+
+/// What of a texel does not follow from its triangle.
+struct SentTexel {
+  uint16_t x = 0, row_in_band = 0;
+  uint32_t triangle_number : 31 = 0;
+  bool centre_covered : 1 = false;
+  Barycentric at;
+};
+static_assert(sizeof(SentTexel) == 16);
+
+void put_band(const std::vector<Texel>& band, ByteWriter& out) {
+  std::vector<SentTexel> sent;
+  sent.reserve(band.size());
+  for (const Texel& t : band)
+    sent.push_back(
+        {t.x, uint16_t(t.y % kBandRows), t.triangle_number, t.centre_covered, t.sample.at});
+  out.put_value(uint64_t(sent.size()));
+  out.put(std::span<const SentTexel>(sent));
+}
+
+/// False: this is no band of the atlas.
+bool take_band(const Atlas& atlas, size_t band, ByteReader& in, std::vector<Texel>& out) {
+  const uint64_t count = in.get_value<uint64_t>();
+  if (count > in.bytes.size() / sizeof(SentTexel)) return false;
+  std::vector<SentTexel> sent(count);
+  in.get(std::span<SentTexel>(sent));
+  out.reserve(count);
+  for (const SentTexel& s : sent) {
+    const size_t y = band * kBandRows + s.row_in_band;
+    if (s.triangle_number >= atlas.corners.size() || int(s.x) >= atlas.resolution ||
+        y >= size_t(atlas.resolution))
+      return false;
+    Texel t;
+    t.x = s.x, t.y = uint16_t(y);
+    const auto drawn = scene::drawn_triangle(atlas.first_triangle, s.triangle_number);
+    t.sample = {drawn.instance, drawn.triangle, s.at};
+    t.triangle_number = s.triangle_number, t.centre_covered = s.centre_covered;
+    out.push_back(t);
+  }
+  return in.ok;
+}
+
+}  // namespace
+
+TexelMap rasterise(const scene::Scene&, const Atlas& atlas, std::shared_ptr<MappedMemory> memory) {
+  const std::vector<std::vector<uint32_t>> bins = bin_triangles(atlas);
+  std::vector<std::vector<Texel>> bands(bins.size());
+  parallel_for(bins.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t b = begin; b < end; ++b) bands[b] = texels_of_band(atlas, bins[b], b);
+  });
+  return map_of(atlas, joined(std::move(bands), std::move(memory)));
+}
+
+Result<TexelMap> rasterise_together(const scene::Scene& scene, const Atlas& atlas, Team* team,
+                                    std::shared_ptr<MappedMemory> memory, Progress& progress) {
+  if (!team) return rasterise(scene, atlas, std::move(memory));
+  const std::vector<std::vector<uint32_t>> bins = bin_triangles(atlas);
+  std::vector<std::vector<Texel>> bands(bins.size());
+  LUXEL_TRY(const std::vector<uint32_t> own, share_out(team, bins.size(), progress, [&](size_t b) {
+              bands[b] = texels_of_band(atlas, bins[b], b);
+            }));
+  LUXEL_TRY_STATUS(exchange(
+      team, own,
+      {bins.size(), [&](size_t b, ByteWriter& out) { put_band(bands[b], out); },
+       [&](size_t b, uint32_t, ByteReader& in) { return take_band(atlas, b, in, bands[b]); }},
+      progress));
+  return map_of(atlas, joined(std::move(bands), std::move(memory)));
 }
 
 TexelMap map_of(const Atlas& atlas, MappedVector<Texel> texels) {

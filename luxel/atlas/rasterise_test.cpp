@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cover.h"
 #include "luxel/atlas/test_scenes.h"
 #include "luxel/base/random.h"
+#include "luxel/base/thread_team.h"
 
 namespace luxel::atlas {
 namespace {
@@ -91,6 +94,27 @@ TEST(Rasterise, TrianglesWithoutAreaAndOnTheBorderGetTexels) {
     EXPECT_GT(t.sample.at.v, 0);
     EXPECT_LT(t.sample.at.u + t.sample.at.v, 1);
   }
+}
+
+// 20 bands of rows for three members: triangles that reach over several bands, and empty ones.
+TEST(Rasterise, IsSharedOutByATeam) {
+  std::vector<std::array<Vec2, 3>> corners(50);
+  RandomStream random{8};
+  for (auto& c : corners)
+    for (Vec2& p : c) p = random.next2() * 250.0f;
+  const Atlas atlas = atlas_of(320, std::move(corners));
+  const TexelMap expected = rasterise({}, atlas);
+  as_team(3, [&](Team& team) {
+    Progress progress;
+    const auto map = rasterise_together({}, atlas, &team, nullptr, progress);
+    ASSERT_TRUE(map) << map.error().message;
+    ASSERT_EQ(map->texels.size(), expected.texels.size());
+    // Texels have no padding.
+    EXPECT_EQ(std::memcmp(map->texels.data(), expected.texels.data(),
+                          sizeof(Texel) * expected.texels.size()),
+              0);
+    EXPECT_EQ(map->texel_at, expected.texel_at);
+  });
 }
 
 TEST(Rasterise, StretchOfAKnownMap) {

@@ -231,6 +231,8 @@ Result<uint64_t> sum_of_members(Team* team, uint64_t own, Progress& progress) {
   return sum;
 }
 
+bool is_first(const Team* team) { return !team || team->rank() == 0; }
+
 Status leave_rest_to_first(const Team* team) {
   if (!team || team->rank() == 0) return {};
   return fail(ErrorCode::parts_missing, "the rest is the work of process 0");

@@ -59,7 +59,7 @@ Status share_ranges(Team* team, size_t count, size_t grain, Progress& progress,
               work(piece * grain, end_of(piece));
             }));
   const auto for_each = [&](size_t piece, const auto& visit) {
-    const size_t begin = piece * grain;
+    [[maybe_unused]] const size_t begin = piece * grain;  // unused where there are no values
     (visit(values.subspan(begin, end_of(piece) - begin)), ...);
   };
   return exchange(team, own,
@@ -126,6 +126,8 @@ requires std::is_trivially_copyable_v<T> Result<T> first_of(Team* team, T value,
 /// The sum of a number over all members. Errors: cancelled, another member gives up.
 Result<uint64_t> sum_of_members(Team* team, uint64_t own, Progress& progress);
 
+/// Whether this is a team's first member, or works alone.
+bool is_first(const Team* team);
 /// Errors (parts_missing): this is a team's member, and not its first, who does the rest.
 Status leave_rest_to_first(const Team* team);
 

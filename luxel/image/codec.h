@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/base/team.h"
 #include "luxel/image/image.h"
 
 namespace luxel::image {
@@ -36,6 +38,10 @@ std::vector<std::byte> encode_png(const Image8& image);
 
 /// OpenEXR scan lines, 32-bit float, ZIP; channels named R, G, B, A in this order (1 to 4).
 Result<std::vector<std::byte>> encode_exr(const Image& image);
+/// encode_exr() by the members of a team, which all have the picture, some rows each. All get the
+/// file. Errors: those of encode_exr(); cancelled, another member gives up.
+Result<std::vector<std::byte>> encode_exr_together(const Image& image, Team* team,
+                                                   Progress& progress);
 /// Channels R, G, B and, when present, A; a file without R, G, B is an error.
 Result<Image> decode_exr(std::span<const std::byte> bytes, std::string_view name);
 

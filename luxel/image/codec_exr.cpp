@@ -13,12 +13,14 @@
 #include <array>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/image/codec.h"
 
 namespace luxel::image {
@@ -213,36 +215,81 @@ void append_blocks(const Part& part, size_t header, size_t& table, std::vector<s
   file.insert(file.end(), part.file.begin() + long(begin), part.file.end());
 }
 
-}  // namespace
+void put_part(const Part& part, ByteWriter& out) {
+  out.put_value(part.blocks), out.put_value(uint64_t(part.file.size()));
+  out.put(std::span<const std::byte>(part.file));
+  out.put_value(uint64_t(part.failed.size()));
+  out.put(std::span<const char>(part.failed));
+}
 
-Result<std::vector<std::byte>> encode_exr(const Image& image) {
+template <class T>
+bool take_array(ByteReader& in, T& out) {
+  const uint64_t size = in.get_value<uint64_t>();
+  if (size > in.bytes.size()) return false;
+  out.resize(size);
+  in.get(std::span(out.data(), out.size()));
+  return in.ok;
+}
+
+bool take_part(ByteReader& in, Part& out) {
+  out.blocks = in.get_value<int>();
+  return take_array(in, out.file) && take_array(in, out.failed);
+}
+
+/// The parts' blocks, one part's after the other's, behind the head of the whole file.
+std::vector<std::byte> joined(const Image& image, std::vector<Part> parts) {
+  std::vector<std::byte> file = file_of(image, {0, image.height}, Blocks::none);
+  const size_t header = file.size() - size_t(blocks_of({0, image.height})) * kOffsetBytes;
+  size_t table = header, bytes = file.size();
+  for (const Part& part : parts) {
+    if (!part.failed.empty()) throw std::runtime_error(part.failed);
+    bytes += part.file.size() - header - size_t(part.blocks) * kOffsetBytes;
+  }
+  file.reserve(bytes);
+  for (Part& part : parts) {
+    append_blocks(part, header, table, file);
+    free_memory(part.file);  // of a large picture there is no room for all twice
+  }
+  return file;
+}
+
+/// `make` makes all parts of the picture, each as a file of its own.
+Result<std::vector<std::byte>> encode_exr_with(const Image& image,
+                                               const std::function<Status(std::span<Part>)>& make) {
   LUXEL_CHECK(image.width > 0 && image.height > 0);
   LUXEL_CHECK(image.channels >= 1 && image.channels <= 4);
   for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
   try {
     make_threads();
-    std::vector<std::byte> file = file_of(image, {0, image.height}, Blocks::none);
-    // Parts of the picture, each as a file of its own.
-    const size_t header = file.size() - size_t(blocks_of({0, image.height})) * kOffsetBytes;
-    const size_t parts = size_t((image.height + kPartRows - 1) / kPartRows);
-    std::vector<Part> made(parts);
-    parallel_for(parts, 1, [&](size_t k, size_t) { made[k] = make_part(image, int(k)); });
-    // Their blocks, one part's after the other's.
-    size_t table = header, bytes = file.size();
-    for (const Part& part : made) {
-      if (!part.failed.empty()) throw std::runtime_error(part.failed);
-      bytes += part.file.size() - header - size_t(part.blocks) * kOffsetBytes;
-    }
-    file.reserve(bytes);
-    for (Part& part : made) {
-      append_blocks(part, header, table, file);
-      free_memory(part.file);  // of a large picture there is no room for all twice
-    }
-    return file;
+    std::vector<Part> parts(size_t((image.height + kPartRows - 1) / kPartRows));
+    LUXEL_TRY_STATUS(make(parts));
+    return joined(image, std::move(parts));
   } catch (const std::exception& e) {
     return fail(ErrorCode::io, "an EXR picture of {} x {} pixels cannot be encoded: {}",
                 image.width, image.height, e.what());
   }
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encode_exr(const Image& image) {
+  return encode_exr_with(image, [&](std::span<Part> parts) -> Status {
+    parallel_for(parts.size(), 1, [&](size_t k, size_t) { parts[k] = make_part(image, int(k)); });
+    return {};
+  });
+}
+
+Result<std::vector<std::byte>> encode_exr_together(const Image& image, Team* team,
+                                                   Progress& progress) {
+  return encode_exr_with(image, [&](std::span<Part> parts) -> Status {
+    LUXEL_TRY(const std::vector<uint32_t> own,
+              share_out(team, parts.size(), progress,
+                        [&](size_t k) { parts[k] = make_part(image, int(k)); }));
+    return exchange(team, own,
+                    {parts.size(), [&](size_t k, ByteWriter& out) { put_part(parts[k], out); },
+                     [&](size_t k, uint32_t, ByteReader& in) { return take_part(in, parts[k]); }},
+                    progress);
+  });
 }
 
 Result<Image> decode_exr(std::span<const std::byte> bytes, std::string_view name) {

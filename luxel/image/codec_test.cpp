@@ -11,6 +11,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/base/thread_team.h"
 #include "luxel/image/color.h"
 
 namespace luxel::image {
@@ -57,6 +58,21 @@ TEST(Exr, ManyPartsAreOneFile) {
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->height, image.height);
   EXPECT_EQ(back->data, image.data);
+}
+
+// Of noise no two parts are alike.
+TEST(Exr, IsCompressedByATeam) {
+  RandomStream random(6);
+  Image image(30, 5 * 64 + 13, 3);
+  for (float& v : image.data) v = random.next();
+  const auto expected = encode_exr(image);
+  ASSERT_TRUE(expected);
+  as_team(3, [&](Team& team) {
+    Progress progress;
+    const auto bytes = encode_exr_together(image, &team, progress);
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    EXPECT_EQ(*bytes, *expected);
+  });
 }
 
 TEST(Exr, RowZeroIsOnTop) {

@@ -2,6 +2,7 @@
 
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/share_out.h"
 #include "luxel/scene/facet.h"
 #include "luxel/scene/sides.h"
 
@@ -125,34 +126,69 @@ SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p
   return smooth_point(scene, bent_facet(scene, p.instance, p.triangle), p);
 }
 
-Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const atlas::TexelMap& map) {
+namespace {
+
+/// As many as the map has texels, where its memory is. No colours yet.
+Elements places_of(const scene::Scene& scene, const atlas::TexelMap& map) {
   const size_t n = map.texels.size();
   const MappedAllocator<Vec3> where(map.texels.get_allocator());
   Elements e{MappedVector<Vec3>(where), MappedVector<Vec3>(where), MappedVector<Vec3>(where),
              MappedVector<Rgb>(where), MappedVector<Rgb>(where)};
   e.position.resize(n), e.normal.resize(n), e.geometric_normal.resize(n), e.reflectance.resize(n);
-  const bool scatters = scene::scatters_light(scene);
-  if (scatters) e.transmittance.resize(n);
+  if (scene::scatters_light(scene)) e.transmittance.resize(n);
   parallel_for(n, 4096, [&](size_t begin, size_t end) {
     BentFacet facet;
     for (size_t i = begin; i < end; ++i) {
-      const atlas::Texel& texel = map.texels[i];
-      const scene::SurfacePoint& p = texel.sample;
+      const scene::SurfacePoint& p = map.texels[i].sample;
       // Neighbours in a row mostly lie in one triangle.
       if (i == begin || !in_same_triangle(p, map.texels[i - 1].sample))
         facet = bent_facet(scene, p.instance, p.triangle);
       const SmoothPoint at = smooth_point(scene, facet, p);
       e.position[i] = at.position, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
-      const bool varies = varies_over_texels(scene::material_at(scene, p));
-      const auto color = [&](ColorAt color_at) {
-        return varies ? mean_over_texel(scene, atlas, texel, color_at) : color_at(scene, p);
-      };
-      e.reflectance[i] = color(scene::reflectance_at);
-      if (scatters) e.transmittance[i] = color(scene::diffuse_transmittance_at);
     }
   });
+  return e;
+}
+
+/// The colours of elements [begin, end).
+void set_colors(const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                size_t begin, size_t end, Elements& e) {
+  for (size_t i = begin; i < end; ++i) {
+    const atlas::Texel& texel = map.texels[i];
+    const bool varies = varies_over_texels(scene::material_at(scene, texel.sample));
+    const auto color = [&](ColorAt color_at) {
+      return varies ? mean_over_texel(scene, atlas, texel, color_at)
+                    : color_at(scene, texel.sample);
+    };
+    e.reflectance[i] = color(scene::reflectance_at);
+    if (!e.transmittance.empty()) e.transmittance[i] = color(scene::diffuse_transmittance_at);
+  }
+}
+
+}  // namespace
+
+Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const atlas::TexelMap& map) {
+  Elements e = places_of(scene, map);
+  parallel_for(e.size(), 4096,
+               [&](size_t begin, size_t end) { set_colors(scene, atlas, map, begin, end, e); });
+  return e;
+}
+
+Result<Elements> elements_together(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                   const atlas::TexelMap& map, Team* team, Progress& progress) {
+  constexpr size_t kGrain = 4096;
+  Elements e = places_of(scene, map);
+  progress.begin("surfaces", (e.size() + kGrain - 1) / kGrain);
+  const auto work = [&](size_t begin, size_t end) { set_colors(scene, atlas, map, begin, end, e); };
+  if (e.transmittance.empty()) {
+    LUXEL_TRY_STATUS(
+        share_ranges(team, e.size(), kGrain, progress, work, std::span<Rgb>(e.reflectance)));
+  } else {
+    LUXEL_TRY_STATUS(share_ranges(team, e.size(), kGrain, progress, work,
+                                  std::span<Rgb>(e.reflectance), std::span<Rgb>(e.transmittance)));
+  }
   return e;
 }
 

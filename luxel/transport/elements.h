@@ -55,5 +55,10 @@ SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p
 /// missed nor aliased. They lie where the texels of the map do.
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                               const atlas::TexelMap& map);
+/// elements_from_texels() by the members of a team, which share their colours out: pictures are
+/// looked up many times for each texel. All get all of them. The stage "surfaces". Errors:
+/// cancelled, another member gives up.
+Result<Elements> elements_together(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                   const atlas::TexelMap& map, Team* team, Progress& progress);
 
 }  // namespace luxel::transport

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/base/thread_team.h"
 #include "luxel/scene/procedural.h"
 
 namespace luxel::transport {
@@ -62,8 +63,8 @@ TEST(Elements, StayOnFlatAndOnHollowTriangles) {
   }
 }
 
-// Half of the texel is white, half black: its reflectance is the mean, not that of the sample.
-TEST(Elements, ReflectanceIsTheMeanOverTheTexel) {
+/// Eight stripes, black and white in turn.
+scene::Scene striped_triangle() {
   auto scene = triangle_scene({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, {});
   scene.meshes[0].uv0 = {{0, 0}, {1, 0}, {0, 1}};
   scene::Texture stripes;
@@ -75,12 +76,39 @@ TEST(Elements, ReflectanceIsTheMeanOverTheTexel) {
   scene.textures.push_back(stripes);
   scene.materials[0].base_color_texture.texture = 0;
   scene.materials[0].base_color_texture.filter = scene::Filter::nearest;
+  return scene;
+}
+
+// Half of the texel is white, half black: its reflectance is the mean, not that of the sample.
+TEST(Elements, ReflectanceIsTheMeanOverTheTexel) {
+  const scene::Scene scene = striped_triangle();
   const float white = scene::reflectance_at(scene, {0, 0, {3 / 16.0f, 0.1f}}).x;
   ASSERT_GT(white, 0.5f);
   // 4 x 4 points see 4 of the 8 stripes at each end of a cell; nine or ten of them and the sample
   // lie in the triangle: within a tenth of one half.
   EXPECT_NEAR(element_of(scene, {0.3f, 0.3f}).reflectance[0].x / white, 0.5f, 0.5f);
   EXPECT_GT(element_of(scene, {0.3f, 0.3f}).reflectance[0].x, 0.0f);
+}
+
+// Several ranges of texels for three members, of a surface that also lets light through.
+TEST(Elements, AreSharedOutByATeam) {
+  scene::Scene scene = striped_triangle();
+  scene.materials[0].diffuse_transmission = 0.25f;
+  atlas::Atlas atlas;
+  atlas.resolution = 200;
+  atlas.first_triangle = {0, 1};
+  atlas.corners = {{Vec2{0, 0}, Vec2{200, 0}, Vec2{0, 200}}};
+  const atlas::TexelMap map = atlas::rasterise(scene, atlas);
+  const Elements expected = elements_from_texels(scene, atlas, map);
+  ASSERT_FALSE(expected.transmittance.empty());
+  as_team(3, [&](Team& team) {
+    Progress progress;
+    const auto found = elements_together(scene, atlas, map, &team, progress);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->reflectance, expected.reflectance);
+    EXPECT_EQ(found->transmittance, expected.transmittance);
+    EXPECT_EQ(found->position, expected.position);
+  });
 }
 
 }  // namespace

@@ -96,7 +96,10 @@ struct Encoded {
 Encoded encode(const BakeSettings& settings, const Bake& bake, Progress& progress) {
   Encoded out;
   const std::array<std::function<void()>, 3> tasks{
-      [&] { out.lightmap = lightmap_files(bake.lightmaps, settings.formats, settings.output); },
+      [&] {
+        out.lightmap = lightmap_files(bake.lightmaps, settings.formats, settings.output, {},
+                                      bake.lightmap_exr);
+      },
       [&] { out.glb = glb_of(settings, bake, out.attached, progress); },
       [&] { out.preview = image::encode_png(bake.preview); }};
   parallel_for(tasks.size(), 1, [&](size_t task, size_t) { tasks[task](); });

@@ -141,16 +141,18 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   return_free_memory();  // of charts, bitmaps and bins: many small ones
   if (const auto ignored = ignored_density(bake.scene, bake.atlas))
     bake.warnings.push_back(*ignored);
-  return Ready{std::move(layout.tracer),
-               transport::elements_from_texels(bake.scene, bake.atlas, bake.map),
-               light::collect_lights(bake.scene)};
+  LUXEL_TRY(transport::Elements elements,
+            transport::elements_together(bake.scene, bake.atlas, bake.map, keepers.team, progress));
+  return Ready{std::move(layout.tracer), std::move(elements), light::collect_lights(bake.scene)};
 }
 
-/// A digest of which texel each element is and where its rays begin. On another kind of machine a
-/// layout may come out differently, whose parts are of no use.
-uint64_t digest_of(const atlas::TexelMap& map, const transport::Elements& elements) {
+/// A digest of where charts lie, which texel each element is and where its rays begin. On another
+/// kind of machine a layout may come out differently, whose parts are of no use.
+uint64_t digest_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                   const transport::Elements& elements) {
   Digest digest;
   digest.add("layout"), digest.add(map.resolution);
+  digest.add(std::span(atlas.corners));
   for (const atlas::Texel& texel : map.texels) digest.add(uint32_t(texel.x) << 16 | texel.y);
   digest.add(std::span(std::as_const(elements.position)));
   digest.add(std::span(std::as_const(elements.normal)));
@@ -175,6 +177,18 @@ void drop_parts(TexelLight& light) {
   free_memory(light.variance), free_memory(light.direct), free_memory(light.direct_variance);
 }
 
+/// The lightmaps' files by all members of a team, which have the same light: compressing them takes
+/// longest of what comes after it.
+Status encode_lightmaps(Team* team, Bake& bake, Progress& progress) {
+  if (!team) return {};
+  progress.begin("compress", 0);
+  for (const image::Image& lightmap : bake.lightmaps) {
+    LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr_together(lightmap, team, progress));
+    bake.lightmap_exr.push_back(std::move(exr));
+  }
+  return {};
+}
+
 /// The rest of bake_scene() for a bake that has its scene.
 Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const BakeObserver& watcher,
                    Bake& bake, Progress& progress) {
@@ -185,7 +199,8 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
   PartStore* parts = keepers.checkpoint ? keepers.checkpoint->parts() : nullptr;
-  const uint64_t layout = parts || keepers.team ? digest_of(bake.map, ready.elements) : 0;
+  const uint64_t layout =
+      parts || keepers.team ? digest_of(bake.atlas, bake.map, ready.elements) : 0;
   if (parts) parts->set_context(layout);
   LUXEL_TRY_STATUS(check_same_work(keepers.team, bake.scene, layout, progress));
   const SolveStores stores{parts, keepers.cache, keepers.device, keepers.team};
@@ -206,18 +221,22 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   LUXEL_TRY(const std::vector<std::string> failures,
             failures_of_others(keepers.team, parts ? parts->failure() : "", progress));
   bake.warnings.insert(bake.warnings.end(), failures.begin(), failures.end());
-  LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   if (keepers.cache) keepers.cache->solved();
   if (const MappedMemory* files = mapped_memory_of(input)) {
     bake.light.scratch_bytes += files->bytes_made();
     if (!watcher.on_estimate) drop_parts(bake.light);
   }
-  LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
+  if (is_first(keepers.team)) {
+    LUXEL_TRY(bake.surface_maps,
+              surface_maps(settings, input, masked, bake.light.hidden, progress));
+  }
   const std::string dark =
       settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();
   if (!dark.empty()) bake.warnings.push_back(dark);
-  LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, regions, bake, progress));
+  LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, regions, bake, progress, keepers.team));
   free_memory(regions);
+  LUXEL_TRY_STATUS(encode_lightmaps(keepers.team, bake, progress));
+  LUXEL_TRY_STATUS(leave_rest_to_first(keepers.team));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
   return draw_preview(settings, ready.tracer, bake, progress);

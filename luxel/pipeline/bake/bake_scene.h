@@ -42,7 +42,9 @@ struct Bake {
   atlas::AtlasStats atlas_stats;
   std::optional<WrongSides> wrong_in_uv1;  ///< Sides::wrong_in_uv1
   TexelLight light;
-  std::vector<image::Image> lightmaps;   ///< E, 4 channels, per page as lightmap.exr holds it
+  std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
+  /// lightmap.exr of each page where a team has made them together; else empty.
+  std::vector<std::vector<std::byte>> lightmap_exr;
   std::vector<image::Image> shown;       ///< for viewers (shown_light.h); empty: the same
   std::vector<BakedLayer> layers;        ///< with --layers
   std::vector<SurfaceMap> surface_maps;  ///< with --shadow-mask, --ambient-occlusion

@@ -57,14 +57,14 @@ void refill(const post::Parted& parted, Bake& bake) {
 }  // namespace
 
 Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer,
-                    std::span<const uint32_t> regions, Bake& bake, Progress& progress) {
+                    std::span<const uint32_t> regions, Bake& bake, Progress& progress, Team* team) {
   progress.begin("seams", 0);
   const std::vector<uint8_t> hidden = not_to_stitch(bake);
   // Hidden texels have no light to tell, so seams are stitched without them, and they take what
   // their neighbours have then.
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
   if (settings.repair_leaks) {
-    LUXEL_TRY(seams, open_seams(bake.scene, bake.atlas, tracer, seams, progress));
+    LUXEL_TRY(seams, open_seams(bake.scene, bake.atlas, tracer, seams, progress, team));
   }
   const post::SeamTexels texels{hidden, regions};
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, texels);

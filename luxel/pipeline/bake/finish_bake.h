@@ -9,9 +9,11 @@ namespace luxel::pipeline {
 
 /// Repairs the light of hidden texels and at seams (settings.repair_leaks, settings.stitch),
 /// without mixing any of `regions` (connected_texels(), or none). Then makes the lightmaps, those
-/// of layers, and the pictures of texels and errors that are asked for. Errors: cancelled.
+/// of layers, and the pictures of texels and errors that are asked for. All members of a team do so
+/// with the same light; what rays it takes is shared out. Errors: cancelled, another member gives
+/// up.
 Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer,
-                    std::span<const uint32_t> regions, Bake& bake, Progress& progress);
+                    std::span<const uint32_t> regions, Bake& bake, Progress& progress, Team* team);
 
 /// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
 inline constexpr int kRefillRings = 2;

@@ -39,7 +39,8 @@ nlohmann::json to_json(const LightmapFormats& formats) {
 
 Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
                                      const LightmapFormats& formats,
-                                     const std::filesystem::path& folder, std::string_view layer) {
+                                     const std::filesystem::path& folder, std::string_view layer,
+                                     std::span<const std::vector<std::byte>> exr_files) {
   LightmapFiles out;
   if (formats.rgbm) out.rgbm_range = image::rgbm_range(lightmaps);
   for (size_t p = 0; p < lightmaps.size(); ++p) {
@@ -48,8 +49,12 @@ Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
     const auto add = [&](const char* extension, std::vector<std::byte> bytes) {
       out.files.push_back({folder / (name + extension), std::move(bytes)});
     };
-    LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(lightmap));
-    add(".exr", std::move(exr));
+    if (exr_files.empty()) {
+      LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(lightmap));
+      add(".exr", std::move(exr));
+    } else {
+      add(".exr", exr_files[p]);
+    }
     if (formats.hdr) add(".hdr", image::encode_hdr(lightmap));
     if (formats.rgbm)
       add(".rgbm.png", image::encode_png(image::rgbm_picture(lightmap, out.rgbm_range)));

@@ -32,11 +32,13 @@ struct LightmapFiles {
 };
 
 /// Pages of a lightmap as NAME.exr and what `formats` adds, in `folder`. NAME is
-/// export_::lightmap_name's, of a layer where one is named. Error: from the EXR encoder.
+/// export_::lightmap_name's, of a layer where one is named. `exr_files`: those of the pages, where
+/// they are made already. Error: from the EXR encoder.
 Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
                                      const LightmapFormats& formats,
                                      const std::filesystem::path& folder,
-                                     std::string_view layer = {});
+                                     std::string_view layer = {},
+                                     std::span<const std::vector<std::byte>> exr_files = {});
 
 /// The lightmaps of the bake in `folder`, as bake.json lists them; lightmap.exr where it lists none
 /// or is not there.

@@ -60,10 +60,11 @@ std::shared_ptr<MappedMemory> memory_for(const BakeSettings& settings, const sce
 }
 
 Result<TexelLayout> lay_out_once(const BakeSettings& settings, const atlas::AtlasParams& params,
-                                 const scene::Scene& scene, Progress& progress) {
+                                 const scene::Scene& scene, Progress& progress, Team* team) {
   LUXEL_TRY(atlas::Atlas atlas, atlas::make_atlas(scene, params, progress));
-  atlas::TexelMap map =
-      atlas::rasterise(scene, atlas, memory_for(settings, scene, atlas.resolution));
+  LUXEL_TRY(atlas::TexelMap map,
+            atlas::rasterise_together(scene, atlas, team,
+                                      memory_for(settings, scene, atlas.resolution), progress));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}, {}, {}};
@@ -89,7 +90,7 @@ Status cut_at_barriers(const BakeSettings& settings, const atlas::AtlasParams& p
     scene = std::move(cut.scene);
     grouped.group = std::move(cut.group);
     layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
-    LUXEL_TRY(layout, lay_out_once(settings, grouped, scene, progress));
+    LUXEL_TRY(layout, lay_out_once(settings, grouped, scene, progress, team));
   }
 }
 
@@ -157,7 +158,7 @@ void take_moved(transport::MovedSamples opened, TexelLayout& layout) {
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
                                    Progress& progress, Team* team) {
   const atlas::AtlasParams params = params_of(settings);
-  LUXEL_TRY(TexelLayout layout, lay_out_once(settings, params, scene, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out_once(settings, params, scene, progress, team));
   if (settings.repair_leaks) {
     LUXEL_TRY_STATUS(cut_at_barriers(settings, params, scene, layout, progress, team));
     LUXEL_TRY(transport::MovedSamples opened,

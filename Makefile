@@ -3,6 +3,7 @@
 #   make demo    installs what is missing, builds, bakes the Cornell box
 #   make test    installs what is missing, builds, runs the tests
 #   make test-all   the tests, and those of tests/only_in_test_all.txt
+#   make python  the Python module, build/release/python, and a wheel of it, build/release/wheel
 #   make docs    checks the pages: links, widths, sentences, commands, options, generated pages; makes
 #                the API pages, build/api/html/index.html
 
@@ -20,7 +21,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs build test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
+.PHONY: setup setup-tests setup-docs build python test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -36,6 +37,10 @@ setup-docs:
 build: setup
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS) --target luxel
+
+python: build
+	cmake --build --preset release --parallel $(JOBS) --target luxel_python
+	tools/python_wheel.sh build/release/python build/release/wheel /usr/bin/python3
 
 test: setup-tests
 	cmake --preset release

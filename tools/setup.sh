@@ -26,6 +26,7 @@ packages=(
   libglfw3-dev libimgui-dev libfreetype-dev      # the window and its panels
   libcli11-dev libtomlplusplus-dev   # the command line, luxel.toml
   libfmt-dev libexpected-dev
+  pybind11-dev python3-dev python3-numpy # the Python module
   libgtest-dev libgmock-dev          # tests
 )
 
@@ -46,6 +47,10 @@ if [[ ${1:-} == tests ]]; then
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
   command -v Xvfb >/dev/null || wanted+=(xvfb)
   command -v blender >/dev/null || wanted+=(blender)
+  # What the Python module's tests and notebooks use besides numpy.
+  for module in scipy matplotlib tqdm nbconvert ipykernel; do
+    /usr/bin/python3 -c "import $module" 2>/dev/null || wanted+=("python3-$module")
+  done
   # Bakes on clusters, which luxel has where it is built with them.
   command -v mpirun >/dev/null || wanted+=(openmpi-bin)
   command -v mpicc >/dev/null || wanted+=(libopenmpi-dev)

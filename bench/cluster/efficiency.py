@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """How well processes share a bake out: measured on this machine, and what that means on a cluster.
 
-    bench/cluster/efficiency.py SCENE [--resolution 1024] [--processes 1,2,4] [--luxel PROGRAM]
+    bench/cluster/efficiency.py SCENE [--resolution 1024] [--processes 1,2,4] [--luxel PROGRAM] [--keep FOLDER]
 
+With --keep the numbers of each run stay in FOLDER as N.json, and a run whose numbers are there is not made again.
 Each process has one thread. Two tables are printed:
 
 - measured: seconds of the wall clock, and of processors over all processes. Their ratio to those of
@@ -16,9 +17,11 @@ Each process has one thread. Two tables are printed:
 """
 
 import argparse
+import hashlib
 import json
 import math
 import os
+import pathlib
 import resource
 import subprocess
 import sys
@@ -34,7 +37,8 @@ NETWORKS = [("10 GbE", 1.1e9, 50e-6), ("InfiniBand HDR", 2.2e10, 2e-6)]
 
 
 def run(luxel, processes, arguments, folder):
-    """Returns bake.json, seconds of the wall clock and of processors."""
+    """Bakes, and returns seconds of the wall clock, of processors and of stages, what was exchanged, and a digest of
+    the lightmap."""
     command = [luxel, "bake", *arguments, "-o", folder, "--threads", "1", "--quiet",
                "--processes-per-node", str(processes)]
     if processes > 1:
@@ -47,8 +51,22 @@ def run(luxel, processes, arguments, folder):
     wall = time.monotonic() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    with open(os.path.join(folder, "bake.json")) as file:
-        return json.load(file), wall, cpu
+    report = json.loads(pathlib.Path(folder, "bake.json").read_text())
+    return {"wall": wall, "cpu": cpu, "stages": {k: v for k, v in report["seconds"].items() if k != "total"},
+            "team": report["team"] or {"exchanges": 0, "bytes": 0},
+            "lightmap": hashlib.sha256(pathlib.Path(folder, "lightmap.exr").read_bytes()).hexdigest()}
+
+
+def run_or_kept(luxel, processes, arguments, folder, keep):
+    kept = pathlib.Path(keep, f"{processes}.json") if keep else None
+    if kept and kept.exists():
+        return json.loads(kept.read_text())
+    found = run(luxel, processes, arguments, folder)
+    if kept:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(found, indent=1))
+    print(f"{processes} done", file=sys.stderr)
+    return found
 
 
 def serial_parts(one, two):
@@ -78,10 +96,6 @@ def self_test():
     assert predicted(1000, 10, {"exchanges": 100, "bytes": 5e9}, 8, 1e9, 1e-2) == 10 + 990 / 8 + 3 + 5
 
 
-def stages_of(report):
-    return {name: seconds for name, seconds in report["seconds"].items() if name != "total"}
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -89,6 +103,7 @@ def main():
     parser.add_argument("--resolution", default="1024")
     parser.add_argument("--processes", default="1,2,4")
     parser.add_argument("--luxel", default="build/release/bin/luxel")
+    parser.add_argument("--keep")
     parser.add_argument("--self-test", action="store_true")
     options = parser.parse_args()
     if options.self_test:
@@ -99,29 +114,25 @@ def main():
     found = {}
     with tempfile.TemporaryDirectory() as folder:
         for n in counts:
-            found[n] = run(options.luxel, n, [options.scene, "--resolution", options.resolution],
-                           os.path.join(folder, str(n)))
-            print(f"{n} done", file=sys.stderr)
-        results = {open(os.path.join(folder, str(n), "lightmap.exr"), "rb").read() for n in counts}
+            found[n] = run_or_kept(options.luxel, n, [options.scene, "--resolution", options.resolution],
+                                   os.path.join(folder, str(n)), options.keep)
+    are_equal = len({found[n]["lightmap"] for n in counts}) == 1
     print(f"The lightmaps of {', '.join(map(str, counts))} processes are "
-          f"{'the same' if len(results) == 1 else 'NOT the same'}, bit by bit.\n")
+          f"{'the same' if are_equal else 'NOT the same'}, bit by bit.\n")
     print("| processes | wall clock [s] | processors [s] | efficiency by processor time | exchanges | "
           "bytes exchanged |")
     print("|---|---|---|---|---|---|")
     for n in counts:
-        report, wall, cpu = found[n]
-        team = report["team"] or {"exchanges": 0, "bytes": 0}
-        print(f"| {n} | {wall:.1f} | {cpu:.1f} | {100 * found[1][2] / cpu:.0f} % | "
-              f"{team['exchanges']} | {team['bytes'] / 1e6:.0f}M |")
-    stages = stages_of(found[1][0])
-    team = found[2][0]["team"]
-    serial = serial_parts(stages, stages_of(found[2][0]))
-    total, alone = sum(stages.values()), sum(serial.values())
+        of = found[n]
+        print(f"| {n} | {of['wall']:.1f} | {of['cpu']:.1f} | {100 * found[1]['cpu'] / of['cpu']:.0f} % | "
+              f"{of['team']['exchanges']} | {of['team']['bytes'] / 1e6:.0f}M |")
+    one, two, team = found[1]["stages"], found[2]["stages"], found[2]["team"]
+    serial = serial_parts(one, two)
+    total, alone = sum(one.values()), sum(serial.values())
     print("\nSerial: " + ", ".join(f"{k} {v:.2f} s" for k, v in serial.items()) +
           f"; {alone:.1f} s of {total:.1f} s.\n")
     print("Stages of one process and of two [s]: " +
-          ", ".join(f"{k} {v:.2f} and {stages_of(found[2][0]).get(k, 0):.2f}"
-                    for k, v in stages.items()) + ".\n")
+          ", ".join(f"{k} {v:.2f} and {two.get(k, 0):.2f}" for k, v in one.items()) + ".\n")
     print("| nodes | " + " | ".join(f"{name} [s] | efficiency" for name, _, _ in NETWORKS) + " |")
     print("|---|" + "---|---|" * len(NETWORKS))
     for nodes in (8, 64, 1024):

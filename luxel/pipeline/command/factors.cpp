@@ -11,6 +11,7 @@
 #include "luxel/base/share_out.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/reuse/same_work.h"
+#include "luxel/scene/validate.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/viewfactor/sampled_factors.h"
 #include "luxel/viewfactor/smooth_factors.h"
@@ -239,22 +240,19 @@ uint64_t digest_of(const FactorSettings& s) {
   return digest.value();
 }
 
-Result<FactorReport> make_report(const FactorSettings& settings, Team* team, Progress& progress) {
-  if (!team || team->rank() == 0) LUXEL_TRY_STATUS(check(settings));  // who writes the table
+/// All but reading the scene. `warnings` are those of reading it.
+Result<FactorReport> make_report(scene::Scene scene, std::vector<std::string> warnings,
+                                 const FactorSettings& settings, Team* team, Progress& progress) {
   // The surfaces, and those that are asked for.
-  progress.begin("read scene", 1);
-  LUXEL_TRY(import::Imported imported,
-            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
   FactorReport report;
-  report.warnings = std::move(imported.warnings);
-  LUXEL_TRY(const viewfactor::Surfaces surfaces,
-            read_surfaces(settings, imported.scene, report, progress));
-  LUXEL_TRY_STATUS(check_same_work(team, imported.scene, digest_of(settings), progress));
+  report.warnings = std::move(warnings);
+  LUXEL_TRY(const viewfactor::Surfaces surfaces, read_surfaces(settings, scene, report, progress));
+  LUXEL_TRY_STATUS(check_same_work(team, scene, digest_of(settings), progress));
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   // Their view factors, and how well they are known.
   LUXEL_TRY(report.matrix,
-            compute(settings, imported.scene, surfaces, report.selection, team, progress));
+            compute(settings, scene, surfaces, report.selection, team, progress));
   LUXEL_TRY_STATUS(leave_rest_to_first(team));
   report.warnings.insert(report.warnings.end(), report.matrix.warnings.begin(),
                          report.matrix.warnings.end());
@@ -272,12 +270,31 @@ Result<FactorReport> make_report(const FactorSettings& settings, Team* team, Pro
   return report;
 }
 
+Result<FactorReport> read_and_report(const FactorSettings& settings, Team* team,
+                                     Progress& progress) {
+  if (!team || team->rank() == 0) LUXEL_TRY_STATUS(check(settings));  // who writes the table
+  progress.begin("read scene", 1);
+  LUXEL_TRY(import::Imported imported,
+            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
+  return make_report(std::move(imported.scene), std::move(imported.warnings), settings, team,
+                     progress);
+}
+
 }  // namespace
 
 Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress, Team* team) {
-  auto done = make_report(settings, team, progress);
+  auto done = read_and_report(settings, team, progress);
   if (!done && done.error().code == ErrorCode::parts_missing) return FactorReport{};
   return or_give_up(team, std::move(done));
+}
+
+Result<FactorReport> view_factors(scene::Scene scene, const FactorSettings& settings,
+                                  Progress& progress) {
+  LUXEL_TRY_STATUS(check(settings));
+  FactorSettings named = settings;
+  if (named.scene.empty()) named.scene = "the scene";
+  LUXEL_TRY(std::vector<std::string> warnings, scene::validate(scene, named.scene.string()));
+  return make_report(std::move(scene), std::move(warnings), named, nullptr, progress);
 }
 
 }  // namespace luxel::pipeline

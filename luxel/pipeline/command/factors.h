@@ -50,6 +50,11 @@ struct FactorReport {
 Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress,
                                   Team* team = nullptr);
 
+/// view_factors() of a scene that a program has built: settings.scene is only a name for messages.
+/// The scene is validated first (luxel/scene/validate.h).
+Result<FactorReport> view_factors(scene::Scene scene, const FactorSettings& settings,
+                                  Progress& progress);
+
 /// The largest sum of tables that the work holds at once [bytes].
 uint64_t factor_table_bytes(size_t surfaces, const FactorSettings& settings);
 

@@ -1,0 +1,24 @@
+#!/bin/sh
+# Makes a wheel of the built Python module.
+#
+#   tools/python_wheel.sh BUILT FOLDER [PYTHON]
+#
+# BUILT holds the built package luxel/ (build/release/python); the wheel is written into FOLDER. PYTHON needs setuptools
+# and wheel.
+set -eu
+if [ $# -lt 2 ]; then
+  sed -n 2,8p "$0"
+  exit 2
+fi
+built=$(cd "$1" && pwd)
+mkdir -p "$2"
+folder=$(cd "$2" && pwd) python=${3:-python3}
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$root/bindings/python"  # nothing is written here
+cp -r luxel pyproject.toml setup.py "$work"
+cp "$root/LICENSE" "$work"
+cd "$work"
+LUXEL_PYTHON=$built LUXEL_SOURCE=$root "$python" setup.py --quiet bdist_wheel --dist-dir "$folder"
+ls "$folder"/luxel-*.whl

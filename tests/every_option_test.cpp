@@ -78,7 +78,7 @@ Options values_of(const Inputs& in) {
       {"compare --exposure", "2"},
       {"--eye", "0,1,3 --look-at 0,0.5,0"},
       {"--floor", "0"},
-      {"--formats", "exr,hdr,rgbm,rgbe"},
+      {"--formats", "exr,hdr,rgbm,rgbe,half,ktx2"},
       {"--fov-deg", "60 --eye 0,1,3 --look-at 0,0.5,0"},
       {"--from", in.bake},
       {"factors --from", "'wall and floor'"},

@@ -50,11 +50,12 @@ TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
   const ScratchFolder s;
   const auto folder = s.path / "b";
   ASSERT_EQ(bake_for_outputs(scene_file("cornell-box.glb"), folder,
-                             "--resolution 64 --samples 16 --formats rgbe,hdr,rgbm")
+                             "--resolution 64 --samples 16 --formats rgbe,hdr,rgbm,half,ktx2")
                 .code,
             0);
   std::set<std::string> expected = kBakeFiles;
-  expected.insert({"lightmap.hdr", "lightmap.rgbm.png", "lightmap.rgbe.png"});
+  expected.insert({"lightmap.hdr", "lightmap.rgbm.png", "lightmap.rgbe.png", "lightmap.half.exr",
+                   "lightmap.ktx2"});
   EXPECT_EQ(files_in(folder), expected);
   const auto json = nlohmann::json::parse(slurp(folder / "bake.json"));
   EXPECT_EQ(json["files"].get<std::set<std::string>>(), expected);
@@ -62,6 +63,11 @@ TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
   const image::Image hdr = *image::decode_hdr(*read_file(folder / "lightmap.hdr"), "hdr");
   const image::Image8 m = *image::decode_ldr(*read_file(folder / "lightmap.rgbm.png"), "rgbm");
   const image::Image8 e = *image::decode_ldr(*read_file(folder / "lightmap.rgbe.png"), "rgbe");
+  const image::Image half =
+      *image::decode_exr(*read_file(folder / "lightmap.half.exr"), "half.exr");
+  EXPECT_EQ(json["lightmap"]["half_scale"], 1);
+  // A head, and a byte for each texel.
+  EXPECT_EQ(std::filesystem::file_size(folder / "lightmap.ktx2"), 192u + 64 * 64);
   const double range = json["lightmap"]["rgbm_range"];
   for (size_t i = 0; i < exr.data.size() / 4; ++i) {
     const double most = double(max_component(exr.rgb(int(i) % 64, int(i) / 64)));
@@ -71,6 +77,7 @@ TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
       const double rgbe = std::exp2(e.data[4 * i + 3] - 136.0) * e.data[4 * i + c];
       EXPECT_NEAR(double(hdr.data[3 * i + c]), light, most / 256 * 1.000001);
       EXPECT_EQ(double(hdr.data[3 * i + c]), rgbe);
+      EXPECT_NEAR(double(half.data[4 * i + c]), light, light / 2048 + 0x1p-25);
       EXPECT_NEAR(multiplier * m.data[4 * i + c] / 255.0, light,
                   (most + range / 255) / 510 * 1.000001);
     }
@@ -83,7 +90,7 @@ TEST(BakeOutputs, AFormatThatIsNoneIsSaid) {
     const CommandResult r = bake_for_outputs(scene_file("cornell-box.glb"), s.path / "b",
                                              std::string("--resolution 32 --formats ") + formats);
     EXPECT_EQ(r.code, 1) << formats;
-    EXPECT_THAT(r.err, HasSubstr("exr, hdr, rgbm, rgbe")) << formats;
+    EXPECT_THAT(r.err, HasSubstr("exr, hdr, rgbm, rgbe, half, ktx2")) << formats;
   }
   EXPECT_EQ(files_in(s.path), std::set<std::string>{});
 }

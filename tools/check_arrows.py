@@ -14,14 +14,14 @@ import sys
 import tempfile
 
 OUTSIDE = ("tests", "tools")  # may include every room but the programs
-PROGRAMS = ("apps", "examples")  # may print and exit; nothing includes them
+PROGRAMS = ("apps", "bindings", "examples")  # may print and exit; nothing includes them
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
                    r"(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|quick_exit|abort)\s*\(")
 PRINT_EXCEPT = {"luxel/base/check.cpp",  # says which contract broke, then aborts
                 "bench/child.cpp"}  # ends the child process that it forked to measure
 TBB_ONLY = {"luxel/base/parallel.h", "luxel/base/parallel.cpp"}
-TOP = ("apps", "bench", "examples")  # rooms that do not lie in luxel/
+TOP = ("apps", "bench", "bindings", "examples")  # rooms that do not lie in luxel/
 
 
 class Table:

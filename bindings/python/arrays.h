@@ -49,8 +49,8 @@ inline Vec3 vec3_of(const Array<float>& array, const std::string& name) {
 /// A colour: three finite numbers that are not negative, or one for all three.
 inline Rgb color_of(const Array<float>& array, const std::string& name) {
   const bool is_gray = array.size() == 1;
-  const Rgb out = is_gray ? Rgb{array.data()[0], array.data()[0], array.data()[0]}
-                          : vec3_of(array, name);
+  const Rgb out =
+      is_gray ? Rgb{array.data()[0], array.data()[0], array.data()[0]} : vec3_of(array, name);
   if (!is_finite(out) || min_component(out) < 0)
     throw py::value_error(name + " must be finite, and not negative");
   return out;

@@ -34,8 +34,9 @@ pipeline::BakeSettings settings_of(const std::filesystem::path& scene, const py:
     if (choice.given.has(flag))
       throw py::value_error(flag.substr(2) + " is for the command `luxel bake`; leave it out");
   if (!choice.settings.empty() && arguments::is_option_file(choice.settings))
-    throw py::value_error("settings must be the bake.json of an earlier bake; files of options are "
-                          "for the command `luxel bake`");
+    throw py::value_error(
+        "settings must be the bake.json of an earlier bake; files of options are "
+        "for the command `luxel bake`");
   return value_of(arguments::settings_of(choice));
 }
 
@@ -50,8 +51,8 @@ std::shared_ptr<PythonBake> bake(const py::object& scene, const py::object& prog
                                  const py::kwargs& options) {
   const bool is_scene = py::isinstance<scene::Scene>(scene);
   auto out = std::make_shared<PythonBake>();
-  out->settings =
-      settings_of(is_scene ? std::filesystem::path() : scene.cast<std::filesystem::path>(), options);
+  out->settings = settings_of(
+      is_scene ? std::filesystem::path() : scene.cast<std::filesystem::path>(), options);
   std::optional<scene::Scene> copy;
   if (is_scene) copy = scene.cast<const scene::Scene&>();
   out->bake = value_of(run(*out->progress, progress, [&](Progress& p) {
@@ -63,14 +64,15 @@ std::shared_ptr<PythonBake> bake(const py::object& scene, const py::object& prog
 }
 
 /// bake.json of the bake, as text.
-std::string save(const PythonBake& self, const std::filesystem::path& folder,
+std::string save_files(const PythonBake& self, const std::filesystem::path& folder,
                  const py::object& callback) {
   pipeline::BakeSettings settings = self.settings;
   settings.output = folder;
   Progress saving;
-  return value_of(run(saving, callback, [&](Progress& p) {
-           return pipeline::save_bake(settings, self.bake, *self.progress, p);
-         }))
+  return value_of(run(saving, callback,
+                      [&](Progress& p) {
+                        return pipeline::save_bake(settings, self.bake, *self.progress, p);
+                      }))
       .dump();
 }
 
@@ -181,8 +183,7 @@ void add_arrays(py::class_<PythonBake, std::shared_ptr<PythonBake>>& type) {
           "triangle and barycentric coordinates of their sample on `scene`.")
       .def_property_readonly("positions", &positions,
                              "Where each texel's sample lies in the world [m], (n, 3). A copy.")
-      .def_property_readonly("irradiance", &irradiance,
-                             "Irradiance of each texel [W/m^2], (n, 3).")
+      .def_property_readonly("irradiance", &irradiance, "Irradiance of each texel [W/m^2], (n, 3).")
       .def_property_readonly(
           "error", &error,
           "The standard error of each texel's luminance, relative to itself or, where it is "
@@ -190,7 +191,8 @@ void add_arrays(py::class_<PythonBake, std::shared_ptr<PythonBake>>& type) {
       .def_property_readonly("texel_corners", &corners,
                              "Where the corners of scene.triangles lie in the map [texels], "
                              "(n, 3, 2).")
-      .def_property_readonly("preview", &preview, "A picture of the scene, (height, width, 3), sRGB.");
+      .def_property_readonly("preview", &preview,
+                             "A picture of the scene, (height, width, 3), sRGB.");
 }
 
 }  // namespace
@@ -208,7 +210,7 @@ void add_bake(py::module_& module) {
       .def_property_readonly(
           "warnings", [](const PythonBake& self) { return self.bake.warnings; },
           "What was to be told, a sentence each.")
-      .def("_save", &save)
+      .def("_save", &save_files)
       .def("__repr__", [](const PythonBake& self) {
         return fmt::format("<luxel.Bake: {} x {} texels, {} of them on surfaces>",
                            self.bake.map.resolution, self.bake.map.resolution,

@@ -53,10 +53,9 @@ py::tuple view_factors(const py::object& scene, const Wanted& wanted, const py::
 
 void add_factors(py::module_& module) {
   module.def("_view_factors",
-             [](const py::object& scene, const std::string& method,
-                std::optional<double> tolerance, std::optional<int64_t> samples,
-                std::optional<int> hemicube, bool smooth, uint64_t seed, int threads,
-                const py::object& progress) {
+             [](const py::object& scene, const std::string& method, std::optional<double> tolerance,
+                std::optional<int64_t> samples, std::optional<int> hemicube, bool smooth,
+                uint64_t seed, int threads, const py::object& progress) {
                if (threads < 0) throw py::value_error("threads must not be negative");
                return view_factors(
                    scene, {method, tolerance, samples, hemicube, smooth, seed, threads}, progress);

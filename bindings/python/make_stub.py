@@ -8,9 +8,11 @@ import pathlib
 import re
 import sys
 
-from luxel import _luxel
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.remove(str(HERE))  # its luxel/ is the source of the package, which is not built
+from luxel import _luxel  # noqa: E402
 
-STUB = pathlib.Path(__file__).resolve().parent / "luxel" / "__init__.pyi"
+STUB = HERE / "luxel" / "__init__.pyi"
 TABLES = {"load": _luxel._options_of_load, "bake": _luxel._options_of_bake, "relighter": _luxel._options_of_relighter}
 BY_HAND = {"bake": [("solver", "str", "How light is computed", "gather"),
                     ("settings", "Value", "Take scene and settings from the bake.json of an earlier bake", "")],

@@ -35,7 +35,8 @@ std::string text_of(const py::handle& value) {
 [[noreturn]] void raise_unknown(const CLI::App& command, const std::string& function,
                                 const std::string& key) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) names.push_back(name_of(option->get_name()));
+  for (const CLI::Option* option : command.get_options())
+    names.push_back(name_of(option->get_name()));
   throw py::type_error(function + "() has no option '" + key + "'" +
                        arguments::did_you_mean(key, names));
 }
@@ -79,7 +80,7 @@ void parse(CLI::App& command, const py::kwargs& options, const std::string& func
 Described describe(const pipeline::OptionText& row, const std::string& default_text) {
   const bool is_off = row.value.empty() && row.flag.starts_with("--no-");
   const std::string note = row.range.empty() ? "" : " (" + row.range + ")";
-  const std::string type = row.value.empty()          ? "bool"
+  const std::string type = row.value.empty()           ? "bool"
                            : row.is_of_kind("letters") ? (row.repeats ? "Values" : "Value")
                            : row.is_of_kind("0.5")     ? "float"
                                                        : "int";

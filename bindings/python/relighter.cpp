@@ -99,7 +99,8 @@ Relighter make(const py::object& scene, const py::object& callback, const py::kw
 void check_lights(const std::vector<scene::PunctualLight>& lights) {
   for (const scene::PunctualLight& light : lights)
     if (light.profile != scene::kNone)
-      throw py::value_error("light '" + light.name + "' has a distribution (IES), which a "
+      throw py::value_error("light '" + light.name +
+                            "' has a distribution (IES), which a "
                             "Relighter does not know");
 }
 
@@ -122,7 +123,7 @@ py::tuple update(Relighter& self, const scene::Scene& lights, const py::object& 
                         array_of_vectors(relit->indirect_at_points));
 }
 
-void save(const Relighter& self, const std::filesystem::path& path) {
+void save_lxr(const Relighter& self, const std::filesystem::path& path) {
   Status done;
   {
     const py::gil_scoped_release without_lock;
@@ -135,8 +136,7 @@ const matrix::RelightData& data_of(const py::object& self) {
   return self.cast<const Relighter&>().data();
 }
 
-py::array_t<float> vectors(const py::object& self,
-                           std::vector<Vec3> matrix::RelightData::*member) {
+py::array_t<float> vectors(const py::object& self, std::vector<Vec3> matrix::RelightData::*member) {
   const std::vector<Vec3>& values = data_of(self).*member;
   return view_of_vectors(values.data(), values.size(), self);
 }
@@ -189,7 +189,7 @@ void add_relighter(py::module_& module) {
            "Prepares a Scene or the scene of a file, or opens an .lxr file. Options are those of "
            "`luxel relight`.")
       .def("_update", &update)
-      .def("save", &save, py::arg("path"), "Writes an .lxr file.")
+      .def("save", &save_lxr, py::arg("path"), "Writes an .lxr file.")
       .def_property_readonly(
           "places",
           [](const py::object& self) {

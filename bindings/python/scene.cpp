@@ -39,8 +39,7 @@ uint32_t add_material(scene::Scene& scene, const std::string& name, const Array<
 }
 
 /// Numbers of the materials of triangles, from one number or one for each.
-std::vector<uint32_t> materials_of(const py::object& material, size_t triangles,
-                                   size_t materials) {
+std::vector<uint32_t> materials_of(const py::object& material, size_t triangles, size_t materials) {
   std::vector<uint32_t> out;
   if (py::isinstance<py::int_>(material)) {
     out.assign(triangles, material.cast<uint32_t>());
@@ -168,7 +167,7 @@ std::array<float, 3> background(const scene::Scene& scene) {
   return {scene.background.x, scene.background.y, scene.background.z};
 }
 
-std::string text_of(const scene::Scene& scene) {
+std::string summary_of(const scene::Scene& scene) {
   return fmt::format("<luxel.Scene: {} triangles, {} materials, {} lights>", triangle_count(scene),
                      scene.materials.size(), scene.lights.size());
 }
@@ -223,7 +222,7 @@ void add_scene(py::module_& module) {
             return out;
           },
           "The row of `triangles` at which each instance begins, and one entry more for the end.")
-      .def("__repr__", &text_of);
+      .def("__repr__", &summary_of);
   module.def("load", &load, py::arg("path"),
              "Reads the scene of a file. Its warnings become Python's.");
   module.def("_options_of_load", [] {

@@ -12,6 +12,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/base/team.h"
+#include "luxel/image/half.h"
 #include "luxel/image/image.h"
 
 namespace luxel::image {
@@ -42,6 +43,8 @@ Result<std::vector<std::byte>> encode_exr(const Image& image);
 /// file. Errors: those of encode_exr(); cancelled, another member gives up.
 Result<std::vector<std::byte>> encode_exr_together(const Image& image, Team* team,
                                                    Progress& progress);
+/// encode_exr() with 16-bit floats, as they are: values are divided by the image's scale.
+Result<std::vector<std::byte>> encode_exr(const HalfImage& image);
 /// Channels R, G, B and, when present, A; a file without R, G, B is an error.
 Result<Image> decode_exr(std::span<const std::byte> bytes, std::string_view name);
 

@@ -71,27 +71,36 @@ struct Rows {
   int begin = 0, end = 0;
 };
 
-Imf::Header make_header(const Image& image, Rows rows) {
+template <class Number>
+constexpr Imf::PixelType kTypeOf = sizeof(Number) == 4 ? Imf::FLOAT : Imf::HALF;
+
+/// `AnyImage`: Image or HalfImage, here and below.
+template <class AnyImage>
+Imf::Header make_header(const AnyImage& image, Rows rows) {
+  using Number = typename decltype(image.data)::value_type;
   Imf::Header header(image.width, image.height);
   header.dataWindow().min.y = rows.begin, header.dataWindow().max.y = rows.end - 1;
   header.compression() = Imf::ZIP_COMPRESSION;
   for (int c = 0; c < image.channels; ++c)
-    header.channels().insert(kChannelNames[size_t(c)], Imf::Channel(Imf::FLOAT));
+    header.channels().insert(kChannelNames[size_t(c)], Imf::Channel(kTypeOf<Number>));
   return header;
 }
 
 /// Slices over `image` whose pixel (0, 0) is the file's pixel (origin_x, origin_y).
-Imf::FrameBuffer make_frame_buffer(const Image& image, int origin_x, int origin_y) {
-  const size_t x_stride = sizeof(float) * size_t(image.channels);
+template <class AnyImage>
+Imf::FrameBuffer make_frame_buffer(const AnyImage& image, int origin_x, int origin_y) {
+  using Number = typename decltype(image.data)::value_type;
+  const size_t x_stride = sizeof(Number) * size_t(image.channels);
   const size_t y_stride = x_stride * size_t(image.width);
   Imf::FrameBuffer buffer;
   for (int c = 0; c < image.channels; ++c) {
     // OpenEXR's buffers are not const even where it only reads them.
-    char* base = reinterpret_cast<char*>(const_cast<float*>(image.data.data() + c));
+    char* base = reinterpret_cast<char*>(const_cast<Number*>(image.data.data() + c));
     // Slice::Make moves the base by the data window without overflowing the pointer.
-    buffer.insert(kChannelNames[size_t(c)],
-                  Imf::Slice::Make(Imf::FLOAT, base, Imath::V2i(origin_x, origin_y), image.width,
-                                   image.height, x_stride, y_stride, 1, 1, c == 3 ? 1.0 : 0.0));
+    buffer.insert(
+        kChannelNames[size_t(c)],
+        Imf::Slice::Make(kTypeOf<Number>, base, Imath::V2i(origin_x, origin_y), image.width,
+                         image.height, x_stride, y_stride, 1, 1, c == 3 ? 1.0 : 0.0));
   }
   return buffer;
 }
@@ -169,7 +178,8 @@ int blocks_of(Rows rows) { return (rows.end - rows.begin + kBlockRows - 1) / kBl
 enum class Blocks : uint8_t { none, all };
 
 /// A file of some rows: a header, the places of its blocks in it, and the blocks.
-std::vector<std::byte> file_of(const Image& image, Rows rows, Blocks blocks) {
+template <class AnyImage>
+std::vector<std::byte> file_of(const AnyImage& image, Rows rows, Blocks blocks) {
   MemoryOutput stream;
   {
     Imf::OutputFile file(stream, make_header(image, rows), 0);
@@ -189,7 +199,8 @@ struct Part {
   std::string failed;
 };
 
-Part make_part(const Image& image, int number) {
+template <class AnyImage>
+Part make_part(const AnyImage& image, int number) {
   const Rows rows{number * kPartRows, std::min(image.height, (number + 1) * kPartRows)};
   Part out;
   out.blocks = blocks_of(rows);
@@ -237,7 +248,8 @@ bool take_part(ByteReader& in, Part& out) {
 }
 
 /// The parts' blocks, one part's after the other's, behind the head of the whole file.
-std::vector<std::byte> joined(const Image& image, std::vector<Part> parts) {
+template <class AnyImage>
+std::vector<std::byte> joined(const AnyImage& image, std::vector<Part> parts) {
   std::vector<std::byte> file = file_of(image, {0, image.height}, Blocks::none);
   const size_t header = file.size() - size_t(blocks_of({0, image.height})) * kOffsetBytes;
   size_t table = header, bytes = file.size();
@@ -254,11 +266,11 @@ std::vector<std::byte> joined(const Image& image, std::vector<Part> parts) {
 }
 
 /// `make` makes all parts of the picture, each as a file of its own.
-Result<std::vector<std::byte>> encode_exr_with(const Image& image,
+template <class AnyImage>
+Result<std::vector<std::byte>> encode_exr_with(const AnyImage& image,
                                                const std::function<Status(std::span<Part>)>& make) {
   LUXEL_CHECK(image.width > 0 && image.height > 0);
   LUXEL_CHECK(image.channels >= 1 && image.channels <= 4);
-  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
   try {
     make_threads();
     std::vector<Part> parts(size_t((image.height + kPartRows - 1) / kPartRows));
@@ -270,17 +282,30 @@ Result<std::vector<std::byte>> encode_exr_with(const Image& image,
   }
 }
 
-}  // namespace
-
-Result<std::vector<std::byte>> encode_exr(const Image& image) {
+template <class AnyImage>
+Result<std::vector<std::byte>> encode_alone(const AnyImage& image) {
   return encode_exr_with(image, [&](std::span<Part> parts) -> Status {
     parallel_for(parts.size(), 1, [&](size_t k, size_t) { parts[k] = make_part(image, int(k)); });
     return {};
   });
 }
 
+void check_finite(const Image& image) {
+  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encode_exr(const Image& image) {
+  check_finite(image);
+  return encode_alone(image);
+}
+
+Result<std::vector<std::byte>> encode_exr(const HalfImage& image) { return encode_alone(image); }
+
 Result<std::vector<std::byte>> encode_exr_together(const Image& image, Team* team,
                                                    Progress& progress) {
+  check_finite(image);
   return encode_exr_with(image, [&](std::span<Part> parts) -> Status {
     LUXEL_TRY(const std::vector<uint32_t> own,
               share_out(team, parts.size(), progress,

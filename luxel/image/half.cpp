@@ -12,6 +12,7 @@ namespace luxel::image {
 namespace {
 
 constexpr int kTopExponent = 15;  ///< scaled colours lie below 2^15
+constexpr float kLargestHalf = 65504;
 constexpr size_t kGrain = 1 << 16;
 
 /// The largest number of an image that is no alpha. All must be finite.
@@ -29,8 +30,7 @@ float largest_of(const Image& image) {
   return of_part.empty() ? 0 : *std::ranges::max_element(of_part);
 }
 
-float scale_of(const Image& image) {
-  const float largest = largest_of(image);
+float scale_of(float largest) {
   if (!(largest > 0)) return 1;
   int exponent = 0;  // largest = m 2^exponent with m in [1/2, 1)
   (void)std::frexp(largest, &exponent);
@@ -39,16 +39,25 @@ float scale_of(const Image& image) {
 
 }  // namespace
 
-HalfImage to_half(const Image& image) {
-  LUXEL_CHECK(image.channels >= 1);
-  HalfImage out{image.width, image.height, image.channels, scale_of(image), {}};
+HalfImage to_half(const Image& image) { return to_half(image, scale_of(largest_of(image))); }
+
+float scale_for_files(std::span<const Image> images) {
+  float largest = 0;
+  for (const Image& image : images) largest = std::max(largest, largest_of(image));
+  return largest >= 0.125f && largest <= kLargestHalf ? 1 : scale_of(largest);
+}
+
+HalfImage to_half(const Image& image, float scale) {
+  LUXEL_CHECK(image.channels >= 1 && scale > 0);
+  HalfImage out{image.width, image.height, image.channels, scale, {}};
   out.data.resize(image.data.size());
   const size_t channels = size_t(image.channels);
   parallel_for(image.data.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
+      LUXEL_CHECK(std::isfinite(image.data[i]));
       const bool is_alpha = channels == 4 && i % channels == 3;
       const float scaled = is_alpha ? image.data[i] : image.data[i] / out.scale;
-      out.data[i] = Imath::half(scaled).bits();
+      out.data[i] = Imath::half(std::clamp(scaled, -kLargestHalf, kLargestHalf)).bits();
     }
   });
   return out;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "luxel/image/image.h"
@@ -20,6 +21,13 @@ struct HalfImage {
 /// an error of at most 2^-11 of the value; below, errors are at most 2^-25 scale. Values are finite
 /// and a black image has scale 1.
 HalfImage to_half(const Image& image);
+
+/// As above with a scale that is given; what lies beyond the largest half becomes that.
+HalfImage to_half(const Image& image, float scale);
+/// The scale of pictures that are files for others: 1 where the largest colour component of all is
+/// from 1/8 to 65504, so that nobody needs it; else the power of two that brings it into
+/// [2^14, 2^15).
+float scale_for_files(std::span<const Image> images);
 
 /// The number that the bits of a half are.
 float from_half(uint16_t bits);

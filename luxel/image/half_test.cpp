@@ -36,6 +36,20 @@ TEST(Half, KeepsElevenBitsOverEightPowersOfTen) {
   EXPECT_LT(top, 0x1p15);
 }
 
+TEST(Half, FilesHaveAScaleOnlyWhereTheyNeedOne) {
+  const auto scale = [](float largest) {
+    Image image(1, 1, 3);
+    image.set_rgb(0, 0, {0.01f * largest, largest, 0});
+    return scale_for_files(std::span(&image, 1));
+  };
+  for (const float largest : {0.0f, 0.125f, 1.0f, 65504.0f}) EXPECT_EQ(scale(largest), 1);
+  EXPECT_EQ(scale(0.0625f), 0x1p-18f);  // 2^-4 = 2^14 * scale
+  EXPECT_EQ(scale(65536.0f), 4);
+  Image bright(1, 1, 3);
+  bright.set_rgb(0, 0, {70000, 1, 1});
+  EXPECT_EQ(value_of(to_half(bright, 1).data[0]), 65504);
+}
+
 TEST(Half, EveryBitPatternIsRead) {
   for (uint32_t bits = 0; bits < 65536; ++bits)
     if ((bits >> 10 & 31) != 31)

@@ -206,7 +206,7 @@ class LongWork(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             luxel.bake(CORNELL_BOX, **self.LONG)
         self.assertLess(time.monotonic() - start, 20)
-        self.assertEqual(luxel.bake(square(), resolution=16, samples=4, background=1).lightmap.shape, (16, 16, 4))
+        self.assertEqual(luxel.bake(square(), resolution=16, samples=4, background=(1, 1, 1)).lightmap.shape, (16, 16, 4))
 
     def test_other_threads_run_meanwhile(self):
         is_over, turns = False, 0
@@ -300,6 +300,8 @@ class Relighting(unittest.TestCase):
     def setUpClass(cls):
         cls.box = luxel.Relighter(CORNELL_BOX, patches=300, rays=512, resolution=32)
         cls.dark = np.zeros((len(cls.box.materials), 3))
+        low, high = cls.box.positions.min(axis=0), cls.box.positions.max(axis=0)
+        cls.above = low + (high - low) * (0.5, 0.85, 0.5)  # of the blocks
 
     def light(self, *lamps):
         scene = luxel.Scene()
@@ -308,17 +310,15 @@ class Relighting(unittest.TestCase):
         return self.box.update(scene, emission=self.dark)
 
     def test_is_linear_in_lamps(self):
-        middle = self.box.positions.mean(axis=0)
-        a, b = (middle, (1, 2, 3)), (middle + (0.1, 0.2, 0.0), (4, 0, 1))
+        a, b = (self.above, (1, 2, 3)), (self.above + (0.05, 0.01, 0.0), (4, 0, 1))
         for of_a, of_b, of_both in zip(self.light(a), self.light(b), self.light(a, b)):
             scale = of_both.max()
             self.assertGreater(scale, 0)
             self.assertTrue(np.allclose(of_a + of_b, of_both, atol=1e-5 * scale))  # floats of many products
 
     def test_direct_light_of_a_point_light_is_its_inverse_square(self):
-        position = self.box.positions.mean(axis=0)
-        relit = self.light((position, (1, 1, 1)))
-        to_lamp = position - self.box.positions
+        relit = self.light((self.above, (1, 1, 1)))
+        to_lamp = self.above - self.box.positions
         distance = np.linalg.norm(to_lamp, axis=1)
         cosine = (to_lamp * self.box.normals).sum(axis=1) / distance
         expected = np.maximum(cosine, 0) / distance**2
@@ -328,7 +328,7 @@ class Relighting(unittest.TestCase):
         self.assertLess(np.median(np.abs(relit.direct[lit, 0] / expected[lit] - 1)), 0.05)
 
     def test_a_saved_file_relights_with_equal_bits(self):
-        lamp = (self.box.positions.mean(axis=0), (1, 1, 1))
+        lamp = (self.above, (1, 1, 1))
         expected = self.light(lamp)
         with tempfile.TemporaryDirectory() as folder:
             self.box.save(folder + "/box.lxr")
@@ -357,7 +357,7 @@ class Compares(unittest.TestCase):
         a = random.uniform(0.5, 1, (40, 30, 3)).astype(np.float32)
         self.assertEqual(luxel.compare(a, a)["flip"], 0)
         found = luxel.compare(a * 1.1, a)
-        self.assertAlmostEqual(found["relative_rmse"], 0.1, places=3)
+        self.assertAlmostEqual(found["relative_rmse"], 0.1, delta=0.002)  # over the light and a little more
         bake = luxel.bake(cube(emission=1), resolution=32, samples=4)
         self.assertEqual(luxel.compare(bake, bake.lightmap)["flip"], 0)
         with tempfile.TemporaryDirectory() as folder:

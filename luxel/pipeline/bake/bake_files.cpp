@@ -115,7 +115,8 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
   LUXEL_TRY(std::vector<std::byte> glb, std::move(encoded.glb));
   std::vector<OutputFile> files = std::move(lightmap.files);
   if (!encoded.attached.is_null()) json["attached"] = encoded.attached;
-  if (lightmap.rgbm_range > 0) json["lightmap"] = {{"rgbm_range", lightmap.rgbm_range}};
+  if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
+  if (lightmap.half_scale > 0) json["lightmap"]["half_scale"] = lightmap.half_scale;
   const auto append = [&](std::vector<OutputFile> more) {
     std::move(more.begin(), more.end(), std::back_inserter(files));
   };

@@ -99,6 +99,7 @@ Result<std::vector<OutputFile>> layer_files(std::span<const BakedLayer> layers,
                             {"mean_irradiance", {mean.x, mean.y, mean.z}},
                             {"files", nlohmann::json::array()}};
     if (own.rgbm_range > 0) about["rgbm_range"] = own.rgbm_range;
+    if (own.half_scale > 0) about["half_scale"] = own.half_scale;
     for (const OutputFile& file : own.files)
       about["files"].push_back(file.path.filename().string());
     json.push_back(std::move(about));

@@ -251,8 +251,7 @@ Result<FactorReport> make_report(scene::Scene scene, std::vector<std::string> wa
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   // Their view factors, and how well they are known.
-  LUXEL_TRY(report.matrix,
-            compute(settings, scene, surfaces, report.selection, team, progress));
+  LUXEL_TRY(report.matrix, compute(settings, scene, surfaces, report.selection, team, progress));
   LUXEL_TRY_STATUS(leave_rest_to_first(team));
   report.warnings.insert(report.warnings.end(), report.matrix.warnings.begin(),
                          report.matrix.warnings.end());

@@ -186,7 +186,7 @@ Options<S> result_options() {
           .leaves(Changes::nothing),
       BakeRows::text(
           "--formats", &S::formats, parse_formats, [](auto& f) { return to_json(f); },
-          "The lightmap as exr (always), hdr, rgbm and rgbe, with commas between them")
+          "The lightmap as exr (always), hdr, rgbm, rgbe, half and ktx2, with commas between them")
           .unit("LIST")
           .leaves(Changes::nothing),
       BakeRows::toggle("--html", &S::html,

@@ -1,9 +1,12 @@
 #include "luxel/pipeline/settings/lightmap_files.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <ranges>
 
 #include "luxel/export/baked_glb.h"
+#include "luxel/image/bc6h.h"
 #include "luxel/image/codec.h"
 #include "luxel/image/rgbe.h"
 #include "luxel/image/rgbm.h"
@@ -11,29 +14,39 @@
 
 namespace luxel::pipeline {
 
+namespace {
+
+struct Format {
+  std::string_view name;
+  bool LightmapFormats::*wanted;
+};
+/// Besides exr, which is always written.
+constexpr std::array kFormats{
+    Format{"hdr", &LightmapFormats::hdr}, Format{"rgbm", &LightmapFormats::rgbm},
+    Format{"rgbe", &LightmapFormats::rgbe}, Format{"half", &LightmapFormats::half},
+    Format{"ktx2", &LightmapFormats::ktx2}};
+
+}  // namespace
+
 Result<LightmapFormats> parse_formats(std::string_view text) {
   LightmapFormats formats;
   for (const std::string_view one : split_at_commas(text)) {
-    if (one == "hdr")
-      formats.hdr = true;
-    else if (one == "rgbm")
-      formats.rgbm = true;
-    else if (one == "rgbe")
-      formats.rgbe = true;
+    const auto* format = std::ranges::find(kFormats, one, &Format::name);
+    if (format != kFormats.end())
+      formats.*format->wanted = true;
     else if (one != "exr")
       return fail(ErrorCode::bad_setting,
-                  "--formats '{}': there is no format '{}'; there is: exr, hdr, rgbm, rgbe, with "
-                  "commas between them",
-                  text, one);
+                  "--formats '{}': there is no format '{}'; there is: exr, {}, with commas between "
+                  "them",
+                  text, one, fmt::join(kFormats | std::views::transform(&Format::name), ", "));
   }
   return formats;
 }
 
 nlohmann::json to_json(const LightmapFormats& formats) {
   nlohmann::json names = {"exr"};
-  if (formats.hdr) names.push_back("hdr");
-  if (formats.rgbm) names.push_back("rgbm");
-  if (formats.rgbe) names.push_back("rgbe");
+  for (const Format& format : kFormats)
+    if (formats.*format.wanted) names.push_back(format.name);
   return names;
 }
 
@@ -43,6 +56,7 @@ Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
                                      std::span<const std::vector<std::byte>> exr_files) {
   LightmapFiles out;
   if (formats.rgbm) out.rgbm_range = image::rgbm_range(lightmaps);
+  if (formats.half || formats.ktx2) out.half_scale = image::scale_for_files(lightmaps);
   for (size_t p = 0; p < lightmaps.size(); ++p) {
     const image::Image& lightmap = lightmaps[p];
     const std::string name = export_::lightmap_name(p, lightmaps.size(), layer);
@@ -59,6 +73,13 @@ Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
     if (formats.rgbm)
       add(".rgbm.png", image::encode_png(image::rgbm_picture(lightmap, out.rgbm_range)));
     if (formats.rgbe) add(".rgbe.png", image::encode_png(image::rgbe_picture(lightmap)));
+    if (out.half_scale == 0) continue;
+    const image::HalfImage half = image::to_half(lightmap, out.half_scale);
+    if (formats.half) {
+      LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(half));
+      add(".half.exr", std::move(exr));
+    }
+    if (formats.ktx2) add(".ktx2", image::ktx2_of_bc6h(half));
   }
   return out;
 }

@@ -18,9 +18,11 @@ struct LightmapFormats {
   bool hdr = false;   ///< NAME.hdr
   bool rgbm = false;  ///< NAME.rgbm.png
   bool rgbe = false;  ///< NAME.rgbe.png
+  bool half = false;  ///< NAME.half.exr
+  bool ktx2 = false;  ///< NAME.ktx2, BC6H
 };
 
-/// "exr,hdr,rgbm,rgbe", in any order; exr is always written, whether it is named or not.
+/// "exr,hdr,rgbm,rgbe,half,ktx2", in any order; exr is always written, whether it is named or not.
 Result<LightmapFormats> parse_formats(std::string_view text);
 /// ["exr", ...].
 nlohmann::json to_json(const LightmapFormats& formats);
@@ -29,6 +31,8 @@ nlohmann::json to_json(const LightmapFormats& formats);
 struct LightmapFiles {
   std::vector<OutputFile> files;
   float rgbm_range = 0;  ///< E = range a rgb in every NAME.rgbm.png; 0 where there is none
+  /// E = scale rgb in every NAME.half.exr and NAME.ktx2; 0 where there is neither.
+  float half_scale = 0;
 };
 
 /// Pages of a lightmap as NAME.exr and what `formats` adds, in `folder`. NAME is

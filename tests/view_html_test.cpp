@@ -440,6 +440,15 @@ TEST_F(ViewHtml, APageOfOnesOwnShowsWhatThePreviewShows) {
   }
 }
 
+// The page is tested with the three of the build.
+TEST(ThreeExample, AsksForTheVersionThatIsTested) {
+  const auto three = [](const char* package) {
+    return nlohmann::json::parse(
+        slurp(std::string(LUXEL_SOURCE_DIR) + package))["dependencies"]["three"];
+  };
+  EXPECT_EQ(three("/examples/three/package.json"), three("/luxel/export/web/package.json"));
+}
+
 TEST(ThreeExample, StandsInTheDocumentation) {
   EXPECT_THAT(slurp(LUXEL_SOURCE_DIR "/docs/format/bake.md"),
               HasSubstr("```js\n" + slurp(LUXEL_SOURCE_DIR "/examples/three/lightmap.js") + "```"));

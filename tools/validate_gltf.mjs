@@ -1,4 +1,4 @@
-// Puts .glb and .gltf files before the Khronos glTF validator; exits with 1 when one has errors.
+// Puts .glb and .gltf files before the Khronos glTF validator; exits with 1 when one has errors or warnings.
 //
 //   npm install --prefix tools
 //   node tools/validate_gltf.mjs baked/baked.glb ...
@@ -23,8 +23,9 @@ for (const file of files) {
     maxIssues: 100,
     externalResourceFunction: beside,
   });
-  failed ||= issues.numErrors > 0;
+  failed ||= issues.numErrors + issues.numWarnings > 0;
   console.log(`${file}: ${issues.numErrors} errors, ${issues.numWarnings} warnings`);
+  if (issues.truncated) console.log("  the first 100 issues:");
   for (const issue of issues.messages)
     if (issue.severity < 2)
       console.log(`  ${severities[issue.severity]} ${issue.code} at ${issue.pointer}: ${issue.message}`);

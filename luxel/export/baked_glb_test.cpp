@@ -306,6 +306,10 @@ TEST(LitGlb, CombinedIsUnlitColor) {
   EXPECT_FALSE(materials["sign"].contains("extras"));
   const std::set<std::string> used = d.j["extensionsUsed"];
   EXPECT_THAT(used, ElementsAre("KHR_lights_punctual", "KHR_materials_unlit"));
+  // Some programs look up every texture by TEXCOORD_0.
+  for (const json& mesh : d.j["meshes"])
+    for (const json& primitive : mesh["primitives"])
+      EXPECT_EQ(primitive["attributes"]["TEXCOORD_0"], primitive["attributes"]["TEXCOORD_1"]);
   // The pictures hold vertex colours; they are finer than the lightmap, so they have mipmaps.
   for (const ReadTriangle& t : read_triangles(d)) EXPECT_EQ(t.corner[0].color, Vec3{});
   EXPECT_EQ(d.j["samplers"][0]["minFilter"], 9987);
@@ -325,6 +329,109 @@ TEST(LitGlb, EmissiveIsEmissionOfBlackSurfaces) {
     EXPECT_FALSE(m["pbrMetallicRoughness"].contains("baseColorTexture")) << name;
   }
   EXPECT_FALSE(materials["sign"]["extensions"].contains("KHR_materials_specular"));
+}
+
+// The alpha of black surfaces is in their colour texture, which has coordinates of its own.
+TEST(LitGlb, ATextureThatStaysKeepsItsCoordinates) {
+  scene::Scene scene = rich_scene();
+  scene.materials[2].base_color_texture.texture = 1;
+  LitPictures pictures;
+  pictures.attach = Attach::emissive;
+  pictures.pages.push_back({8, 8, 3, std::vector<uint8_t>(192, 128)});
+  const auto glb = lit_glb(scene, made_up_atlas(scene), pictures);
+  ASSERT_TRUE(glb);
+  const Document d = parse(*glb);
+  for (const json& mesh : d.j["meshes"])
+    for (const json& primitive : mesh["primitives"]) {
+      const bool is_leaf = d.j["materials"][primitive["material"].get<size_t>()]["name"] == "leaf";
+      const json& attributes = primitive["attributes"];
+      EXPECT_EQ(attributes["TEXCOORD_0"] != attributes["TEXCOORD_1"], is_leaf);
+    }
+}
+
+// The Khronos validator wants colours up to 1, and no other extension beside KHR_materials_unlit.
+TEST(SceneGlb, UnlitMaterialsAndColorsAreValid) {
+  scene::Scene scene = rich_scene();
+  scene.meshes[0].colors[0] = {2, 0.5f, -1};
+  scene.materials[3].specular = {0.5f, 0.5f, 0.5f};
+  const auto glb = scene_glb(scene);
+  ASSERT_TRUE(glb);
+  const Document d = parse(*glb);
+  EXPECT_EQ(read_triangles(d)[0].corner[0].color, (Vec3{1, 0.5f, 0}));
+  EXPECT_EQ(materials_of(d)["sign"]["extensions"].size(), 1u);
+}
+
+/// A square in the plane of x and y, seen from z, and its mirror image beside it, with a normal
+/// map.
+scene::Scene bumpy_squares() {
+  scene::Scene scene;
+  add_materials(scene);
+  scene.materials[0].base_color_texture = {};
+  scene.materials[0].normal_texture.texture = 0;
+  scene::Mesh mesh;
+  for (const float x : {0.0f, 1.0f, 2.0f})
+    for (const float y : {0.0f, 1.0f}) {
+      mesh.positions.push_back({x, y, 0});
+      mesh.normals.push_back({0, 0, 1});
+      mesh.uv0.push_back({x < 2 ? x : 0, 1 - y});  // glTF has v = 0 at the top
+    }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {2, 4, 5}, {2, 5, 3}};
+  mesh.triangle_material.assign(4, 0);
+  scene.meshes.push_back(mesh);
+  scene.instances.push_back({"squares", 0, {}});
+  return scene;
+}
+
+// u grows along x on the first square and against it on the second; up is the picture's up on both,
+// so w differs. glTF 2.0: bitangent = cross(normal, tangent) * w.
+TEST(BakedGlb, NormalMapsHaveTangents) {
+  const scene::Scene scene = bumpy_squares();
+  const Document d = parse(*baked_glb(scene, made_up_atlas(scene), ramp_lightmap()));
+  const json& primitives = d.j["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2u) << "mirrored triangles share no vertices with others";
+  for (size_t k = 0; k < 2; ++k) {
+    const json& accessor = d.j["accessors"][primitives[k]["attributes"]["TANGENT"].get<size_t>()];
+    EXPECT_EQ(accessor["type"], "VEC4");
+    const std::vector<float> found = floats(d, accessor);
+    const float side = k == 0 ? 1.0f : -1.0f;
+    for (size_t i = 0; i < found.size(); i += 4)
+      EXPECT_THAT(std::vector(&found[i], &found[i] + 4), ElementsAre(side, 0, 0, side));
+  }
+  EXPECT_EQ(read_triangles(d).size(), 4u);
+}
+
+// Where coordinates have no area there is some tangent.
+TEST(BakedGlb, TangentsAreUnitVectorsWhateverTheCoordinates) {
+  scene::Scene scene = bumpy_squares();
+  for (Vec2& uv : scene.meshes[0].uv0) uv = {0.5f, 0.5f};
+  const Document d = parse(*baked_glb(scene, made_up_atlas(scene), ramp_lightmap()));
+  const json& attributes = d.j["meshes"][0]["primitives"][0]["attributes"];
+  const std::vector<float> found = floats(d, d.j["accessors"][attributes["TANGENT"].get<size_t>()]);
+  for (size_t i = 0; i < found.size(); i += 4) {
+    EXPECT_NEAR(length(Vec3{found[i], found[i + 1], found[i + 2]}), 1, 1e-5);
+    EXPECT_EQ(found[i + 2], 0);
+  }
+}
+
+// glTF gives meshes without normals no tangents: a bump map gets the planes' own normals.
+TEST(BakedGlb, NormalMapsOfFlatMeshesHaveTangents) {
+  scene::Scene scene = bumpy_squares();
+  scene.meshes[0].normals.clear();
+  const Document d = parse(*baked_glb(scene, made_up_atlas(scene), ramp_lightmap()));
+  for (const json& primitive : d.j["meshes"][0]["primitives"])
+    EXPECT_TRUE(primitive["attributes"].contains("TANGENT"));
+  const std::vector<ReadTriangle> read = read_triangles(d);
+  ASSERT_EQ(read.size(), 4u);
+  for (uint32_t t = 0; t < 4; ++t)
+    for (size_t c = 0; c < 3; ++c) {
+      const uint32_t v = scene.meshes[0].triangles[t][c];
+      EXPECT_EQ(read[t].corner[c].position, scene.meshes[0].positions[v]);
+      EXPECT_EQ(read[t].corner[c].uv0, scene.meshes[0].uv0[v]);
+      EXPECT_EQ(read[t].corner[c].normal, (Vec3{0, 0, 1}));
+    }
+  scene.materials[0].normal_texture = {};
+  const Document plain = parse(*baked_glb(scene, made_up_atlas(scene), ramp_lightmap()));
+  EXPECT_FALSE(plain.j["meshes"][0]["primitives"][0]["attributes"].contains("NORMAL"));
 }
 
 // The words of extras go out as they came in; what is not lightmapped has a place in the lightmap,
@@ -372,6 +479,9 @@ TEST(SceneGlb, LeavesSamplesForTheValidator) {
   std::filesystem::create_directories(folder);
   EXPECT_TRUE(write_file_atomically(folder / "baked.glb", Baked().bytes));
   EXPECT_TRUE(write_file_atomically(folder / "scene.glb", *scene_glb(rich_scene())));
+  const scene::Scene bumpy = bumpy_squares();
+  EXPECT_TRUE(write_file_atomically(folder / "bumpy.glb",
+                                    *baked_glb(bumpy, made_up_atlas(bumpy), ramp_lightmap())));
   for (const Attach attach : {Attach::combined, Attach::emissive}) {
     std::vector<std::byte> bytes;
     lit_document(attach, &bytes);

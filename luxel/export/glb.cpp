@@ -77,6 +77,10 @@ size_t append_accessor(Glb& glb, std::span<const Vec3> values) {
   return append_floats(glb, std::as_bytes(values), "VEC3", 3);
 }
 
+size_t append_accessor(Glb& glb, std::span<const std::array<float, 4>> values) {
+  return append_floats(glb, std::as_bytes(values), "VEC4", 4);
+}
+
 size_t append_indices(Glb& glb, std::span<const uint32_t> indices) {
   LUXEL_CHECK(!indices.empty());
   const auto [lowest, highest] = std::minmax_element(indices.begin(), indices.end());

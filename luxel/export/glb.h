@@ -1,6 +1,7 @@
 // A glTF document while it is being written: its JSON, and the bytes of its one buffer.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,7 @@ size_t append_view(Glb& glb, std::span<const std::byte> bytes, int target, size_
 /// Vertex attributes as accessors of floats with their bounds. Not empty.
 size_t append_accessor(Glb& glb, std::span<const Vec2> values);
 size_t append_accessor(Glb& glb, std::span<const Vec3> values);
+size_t append_accessor(Glb& glb, std::span<const std::array<float, 4>> values);
 /// Triangle corners: 16 bits wide where they fit, else 32.
 size_t append_indices(Glb& glb, std::span<const uint32_t> indices);
 

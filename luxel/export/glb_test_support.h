@@ -48,7 +48,7 @@ inline Document parse(std::span<const std::byte> glb) {
 inline std::vector<float> floats(const Document& d, const json& accessor) {
   const json& view = d.j["bufferViews"][accessor["bufferView"].get<size_t>()];
   const std::string type = accessor["type"];
-  const size_t components = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : 3;
+  const size_t components = type == "SCALAR" ? 1 : type.back() - '0';  // VEC2
   std::vector<float> out(accessor["count"].get<size_t>() * components);
   EXPECT_EQ(accessor["componentType"], 5126);
   EXPECT_EQ(view["byteLength"], out.size() * 4);

@@ -64,7 +64,11 @@ VertexLit vertex_lit(const scene::Scene& scene, const hemicube::Field& field) {
   out.intensity = image::white_level(field.irradiance);
   out.scene = scene;
   out.scene.meshes.clear(), out.scene.instances.clear(), out.scene.lights.clear();
-  for (scene::Material& material : out.scene.materials) material.unlit = true;
+  for (scene::Material& material : out.scene.materials) {
+    material.unlit = true;
+    // KHR_materials_unlit goes with no other extension, and unlit surfaces show neither.
+    material.emission = {}, material.transmission = 0, material.diffuse_transmission = 0;
+  }
   std::vector<std::vector<uint32_t>> leaves(scene.instances.size());
   for (uint32_t i = 0; i < field.receivers.leaves.size(); ++i)
     leaves[field.mesh.nodes[field.receivers.leaves[i]].instance].push_back(i);

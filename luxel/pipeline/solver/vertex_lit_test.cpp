@@ -17,6 +17,7 @@ struct Lit {
 Lit lit_cube(hemicube::ElementKind kind) {
   Lit out;
   scene::add_material(out.scene, "gray", {0.5f, 0.5f, 0.5f});
+  out.scene.materials[0].emission = {2, 2, 2};
   scene::Mesh cube;
   scene::add_box(cube, {0, 0, 0}, {1, 1, 1}, 0);
   scene::place(out.scene, std::move(cube),
@@ -56,7 +57,10 @@ TEST(VertexLit, ColorsTimesIntensityAreTheLight) {
       EXPECT_NEAR(found.z, 7, 1e-5f);
     }
   }
-  for (const scene::Material& m : out.scene.materials) EXPECT_TRUE(m.unlit);
+  for (const scene::Material& m : out.scene.materials) {
+    EXPECT_TRUE(m.unlit);
+    EXPECT_EQ(m.emission, Rgb{}) << "unlit surfaces show none";
+  }
 }
 
 TEST(VertexLit, LightPerTriangleSplitsAllVertices) {

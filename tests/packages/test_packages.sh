@@ -92,6 +92,14 @@ assert luxel.__file__.startswith('$root'), luxel.__file__
 print(luxel.bake('furnace-box.glb', resolution=16, samples=4), luxel.__version__)"
 }
 
+# The smaller one of examples/library, which looks for neither Assimp nor CGAL.
+check_library() {
+  cp -r "$source/examples/library/relight" "$folder/work/relight"
+  alone sh -c "cmake -G Ninja -S relight -B relight/build -DCMAKE_PREFIX_PATH='$root/usr' && cmake --build relight/build" \
+    >"$folder/log" 2>&1 || { cat "$folder/log"; fail "the example of libluxel-dev does not build"; }
+  alone relight/build/relight box.lxr 3 >/dev/null
+}
+
 check_pages() {
   for page in "$root"/usr/share/man/man1/*.gz; do
     said=$(MANWIDTH=80 LC_ALL=C.UTF-8 man --warnings -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null)
@@ -140,6 +148,7 @@ install_packages
 check_files
 check_programs
 check_python
+check_library
 check_pages
 check_completions
 check_desktop

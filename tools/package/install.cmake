@@ -25,6 +25,13 @@ endfunction()
 luxel_install_rooms(luxelRelightTargets ${luxel_relight_rooms} relight)
 luxel_install_rooms(luxelPipelineTargets ${luxel_pipeline_rooms})
 install(FILES ${draco_archive} DESTINATION ${luxel_archives} COMPONENT dev)
+# `cmake --install --strip` and packages strip programs only.
+install(CODE "
+if(CMAKE_INSTALL_DO_STRIP)
+  file(GLOB archives \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${luxel_archives}/*.a\")
+  execute_process(COMMAND \"${CMAKE_STRIP}\" --strip-debug --remove-section=.comment
+                          --enable-deterministic-archives \${archives} COMMAND_ERROR_IS_FATAL ANY)
+endif()" COMPONENT dev)
 
 install(TARGETS luxel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT luxel)
 # OPTIONAL, as the pages below: `make build` builds luxel alone.

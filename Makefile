@@ -4,6 +4,7 @@
 #   make test    installs what is missing, builds, runs the tests
 #   make test-all   the tests, and those of tests/only_in_test_all.txt
 #   make python  the Python module, build/release/python, and a wheel of it, build/release/wheel
+#   make package  the .deb files of Debian, build/release/packages (docs/guide/install.md)
 #   make docs    checks the pages: links, widths, sentences, commands, options, generated pages; makes
 #                the API pages, build/api/html/index.html
 
@@ -21,7 +22,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs build python test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
+.PHONY: setup setup-tests setup-docs setup-package build python package test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -34,6 +35,10 @@ setup-tests:
 setup-docs:
 	@tools/setup.sh docs
 
+# What only packages need.
+setup-package:
+	@tools/setup.sh package
+
 build: setup
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS) --target luxel
@@ -41,6 +46,11 @@ build: setup
 python: build
 	cmake --build --preset release --parallel $(JOBS) --target luxel_python
 	tools/python_wheel.sh build/release/python build/release/wheel /usr/bin/python3
+
+package: setup setup-package
+	cmake --preset release
+	cmake --build --preset release --parallel $(JOBS) --target packages
+	@ls build/release/packages/*.deb
 
 test: setup-tests
 	cmake --preset release

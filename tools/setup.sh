@@ -6,6 +6,7 @@
 #   tools/setup.sh tests    and what only tests use
 #   tools/setup.sh docs     and what only the API pages need
 #   tools/setup.sh fuzz     and what only the fuzzers need
+#   tools/setup.sh package  and what only `make package` needs
 #
 # luxel builds without node, npm and chromium, with less (docs/format/bake.md, view.html): where they
 # cannot be installed, that is said and no error.
@@ -41,12 +42,21 @@ wanted=()
 for tool in node:nodejs npm:npm; do
   command -v "${tool%%:*}" >/dev/null || wanted+=("${tool##*:}")
 done
+if [[ ${1:-} == package || ${1:-} == tests ]]; then
+  command -v dpkg-shlibdeps >/dev/null || wanted+=(dpkg-dev)
+  command -v file >/dev/null || wanted+=(file)
+fi
 if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
   command -v Xvfb >/dev/null || wanted+=(xvfb)
   command -v blender >/dev/null || wanted+=(blender)
+  # Who looks at the packages, and at what is in them.
+  for tool in lintian:lintian man:man-db desktop-file-validate:desktop-file-utils xmllint:libxml2-utils \
+    update-mime-database:shared-mime-info zsh:zsh fish:fish; do
+    command -v "${tool%%:*}" >/dev/null || wanted+=("${tool##*:}")
+  done
   # What the Python module's tests and notebooks use besides numpy.
   for module in scipy matplotlib tqdm nbconvert ipykernel; do
     /usr/bin/python3 -c "import $module" 2>/dev/null || wanted+=("python3-$module")

@@ -45,7 +45,8 @@ build: setup
 
 python: build
 	cmake --build --preset release --parallel $(JOBS) --target luxel_python
-	tools/python_wheel.sh build/release/python build/release/wheel /usr/bin/python3
+	tools/python_wheel.sh build/release/python build/release/wheel \
+	  $$(sed -n 's/^_Python3_EXECUTABLE:INTERNAL=//p' build/release/CMakeCache.txt)
 
 package: setup setup-package
 	cmake --preset release

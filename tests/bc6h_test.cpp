@@ -106,6 +106,16 @@ TEST_F(Bc6h, KeepsTheEndsOfEdges) {
     }
 }
 
+// Colours that differ at a right angle to grey, where a search that begins with grey finds nothing.
+TEST_F(Bc6h, TellsRedFromGreen) {
+  const image::Image edge = image_of(4, 4, [](int x, int) {
+    return x < 2 ? Rgb{2, 1, 1} : Rgb{1, 2, 1};
+  });
+  const std::vector<float> found = decoded(image::to_half(edge, 1));
+  for (size_t i = 0; i < edge.data.size(); ++i)
+    ASSERT_NEAR(found[i / 3 * 4 + i % 3] / edge.data[i], 1, 0.016) << i;  // as above
+}
+
 TEST_F(Bc6h, LooksAtNoTexelThatIsNotThere) {
   image::Image image(4, 4, 4);
   for (int i = 0; i < 16; ++i)

@@ -3,8 +3,8 @@
 #
 #   tools/python_wheel.sh BUILT FOLDER [PYTHON]
 #
-# BUILT holds the built package luxel/ (build/release/python); the wheel is written into FOLDER. PYTHON needs setuptools
-# and wheel.
+# BUILT holds the built package luxel/ (build/release/python); the wheel is written into FOLDER. Without setuptools and
+# wheel in PYTHON it is Debian's python3 that makes it.
 set -eu
 if [ $# -lt 2 ]; then
   sed -n 2,8p "$0"
@@ -13,6 +13,7 @@ fi
 built=$(cd "$1" && pwd)
 mkdir -p "$2"
 folder=$(cd "$2" && pwd) python=${3:-python3}
+"$python" -c 'import setuptools, wheel' 2>/dev/null || python=/usr/bin/python3
 root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -72,6 +72,8 @@ def run_or_kept(luxel, processes, arguments, folder, keep):
 def serial_parts(one, two):
     """Seconds of each stage that do not become fewer with more processes, from the seconds of the
     stages of one process and of two."""
+    # A team compresses lightmap.exr before it writes files.
+    two = dict(two, **{"write files": two.get("write files", 0) + two.get("compress", 0)})
     parts = {name: s for name, s in one.items() if name in SERIAL}
     for name in PARTLY_SERIAL & set(one):
         parts[name] = min(one[name], max(0.0, 2 * two.get(name, one[name]) - one[name]))

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,26 @@ template <class Row, class T>
 std::vector<Row> rows_or_none(const py::object& array, const std::string& name) {
   if (array.is_none()) return {};
   return rows_of<Row, T>(array.cast<Array<T>>(), name);
+}
+
+/// An array of whole numbers, of any number of dimensions. Raises TypeError for others: numpy would
+/// cut them.
+inline Array<int64_t> whole_numbers_of(const py::object& object, const std::string& name) {
+  const py::array array = py::module_::import("numpy").attr("asarray")(object);
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u' && array.size() != 0)
+    throw py::type_error(name + " must be whole numbers");
+  return array.cast<Array<int64_t>>();
+}
+
+/// A scene's file. Raises TypeError for what is no path, and for what no path can be.
+inline std::filesystem::path path_of(const py::object& object) {
+  try {
+    const auto text = py::str(py::module_::import("os").attr("fspath")(object)).cast<std::string>();
+    if (text.find('\0') == text.npos) return text;
+  } catch (const std::exception&) {  // said below
+  }
+  throw py::type_error("scene must be a luxel.Scene or a path");
 }
 
 /// Three finite numbers.

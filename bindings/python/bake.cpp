@@ -51,8 +51,7 @@ std::shared_ptr<PythonBake> bake(const py::object& scene, const py::object& prog
                                  const py::kwargs& options) {
   const bool is_scene = py::isinstance<scene::Scene>(scene);
   auto out = std::make_shared<PythonBake>();
-  out->settings = settings_of(
-      is_scene ? std::filesystem::path() : scene.cast<std::filesystem::path>(), options);
+  out->settings = settings_of(is_scene ? std::filesystem::path() : path_of(scene), options);
   std::optional<scene::Scene> copy;
   if (is_scene) copy = scene.cast<const scene::Scene&>();
   out->bake = value_of(run(*out->progress, progress, [&](Progress& p) {
@@ -65,7 +64,7 @@ std::shared_ptr<PythonBake> bake(const py::object& scene, const py::object& prog
 
 /// bake.json of the bake, as text.
 std::string save_files(const PythonBake& self, const std::filesystem::path& folder,
-                 const py::object& callback) {
+                       const py::object& callback) {
   pipeline::BakeSettings settings = self.settings;
   settings.output = folder;
   Progress saving;
@@ -199,7 +198,8 @@ void add_arrays(py::class_<PythonBake, std::shared_ptr<PythonBake>>& type) {
 
 void add_bake(py::module_& module) {
   py::class_<PythonBake, std::shared_ptr<PythonBake>> type(
-      module, "Bake", "The light of a scene. Its arrays are views, which cannot be written.");
+      module, "Bake", py::is_final(),
+      "The light of a scene. Its arrays are views, which cannot be written.");
   add_arrays(type);
   type.def_property_readonly(
           "scene", [](const PythonBake& self) { return self.bake.scene; },

@@ -24,6 +24,8 @@ pipeline::Picture picture_of(const Array<float>& array, const std::string& name)
 /// The object of `luxel compare --json`, as text.
 std::string compare_arrays(const Array<float>& a, const Array<float>& b,
                            std::optional<double> exposure, const py::object& callback) {
+  if (exposure && !(*exposure >= 1e-20 && *exposure <= 1e20))
+    throw py::value_error("exposure must be from 1e-20 to 1e20");
   const pipeline::Picture first = picture_of(a, "a"), second = picture_of(b, "b");
   Progress progress;
   const pipeline::Measured found = value_of(run(progress, callback, [&](Progress& p) {

@@ -34,7 +34,7 @@ py::tuple view_factors(const py::object& scene, const Wanted& wanted, const py::
   if (py::isinstance<scene::Scene>(scene))
     copy = scene.cast<const scene::Scene&>();
   else
-    settings.scene = scene.cast<std::filesystem::path>();
+    settings.scene = path_of(scene);
   Progress progress;
   const pipeline::FactorReport found = value_of(run(progress, callback, [&](Progress& p) {
     const ThreadLimit limit(wanted.threads);
@@ -56,7 +56,8 @@ void add_factors(py::module_& module) {
              [](const py::object& scene, const std::string& method, std::optional<double> tolerance,
                 std::optional<int64_t> samples, std::optional<int> hemicube, bool smooth,
                 uint64_t seed, int threads, const py::object& progress) {
-               if (threads < 0) throw py::value_error("threads must not be negative");
+               if (threads < 0 || threads > 1024)
+                 throw py::value_error("threads must be from 0 to 1024");
                return view_factors(
                    scene, {method, tolerance, samples, hemicube, smooth, seed, threads}, progress);
              });

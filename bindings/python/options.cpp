@@ -3,6 +3,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <string_view>
 
 #include "luxel/arguments/near_miss.h"
 
@@ -21,15 +22,36 @@ std::string name_of(const std::string& flag) {
 bool is_switch(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 
 bool is_list(const py::handle& value) {
-  return PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value);
+  return PySequence_Check(value.ptr()) != 0 && !py::isinstance<py::str>(value) &&
+         !py::isinstance<py::bytes>(value);
 }
 
-/// Numbers and texts as the command line has them; lists with commas.
-std::string text_of(const py::handle& value) {
-  if (!is_list(value)) return py::str(value).cast<std::string>();
+/// A number, a text or a path as the command line has it. A whole number may be a float.
+std::string text_of_one(const std::string& key, const py::handle& value) {
+  if (is_list(value)) throw py::type_error(key + " must not hold lists within lists");
+  if (py::isinstance<py::bytes>(value))
+    throw py::type_error(key + " must be text or a path, not bytes");
+  if (PyFloat_Check(value.ptr()) && value.attr("is_integer")().cast<bool>())
+    return py::str(py::int_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  const auto text = py::str(value).cast<std::string>();
+  if (text.empty() || text.find('\0') != text.npos)
+    throw py::value_error(key + " needs a value; None stands for none");
+  return text;
+}
+
+/// text_of_one(); of a list all, with commas.
+std::string text_of(const std::string& key, const py::handle& value) {
+  if (!is_list(value)) return text_of_one(key, value);
   std::string out;
-  for (const py::handle& one : value) out += (out.empty() ? "" : ",") + text_of(one);
+  for (const py::handle& one : value) out += (out.empty() ? "" : ",") + text_of_one(key, one);
+  if (out.empty()) throw py::value_error(key + " needs a value; None stands for none");
   return out;
+}
+
+/// Python's own truth values, and numpy's.
+bool is_truth(const py::handle& value) {
+  return py::isinstance<py::bool_>(value) ||
+         std::string_view(Py_TYPE(value.ptr())->tp_name) == "numpy.bool_";
 }
 
 [[noreturn]] void raise_unknown(const CLI::App& command, const std::string& function,
@@ -50,16 +72,16 @@ void add_arguments(const CLI::App& command, const std::string& function, const s
   if (!option && !off) raise_unknown(command, function, key);
   if (value.is_none()) return;
   const bool takes_value = option && !is_switch(*option);
-  if (takes_value == py::isinstance<py::bool_>(value))
+  if (takes_value == is_truth(value))
     throw py::type_error(key + (takes_value ? " needs a value" : " must be True or False"));
   if (!takes_value) {
-    const bool is_on = value.cast<bool>();
+    const bool is_on = py::bool_(py::reinterpret_borrow<py::object>(value));
     if (is_on && option) out.push_back("--" + dashed);
     if (!is_on && off) out.push_back("--no-" + dashed);
   } else if (is_list(value) && option->get_items_expected_max() > 1) {
-    for (const py::handle& one : value) out.push_back("--" + dashed + "=" + text_of(one));
+    for (const py::handle& one : value) out.push_back("--" + dashed + "=" + text_of_one(key, one));
   } else {
-    out.push_back("--" + dashed + "=" + text_of(value));
+    out.push_back("--" + dashed + "=" + text_of(key, value));
   }
 }
 

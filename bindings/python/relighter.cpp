@@ -4,19 +4,28 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <mutex>
+
 #include "bindings/python/arrays.h"
 #include "bindings/python/options.h"
 #include "luxel/arguments/table_options.h"
 #include "luxel/base/file.h"
+#include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/relight_options.h"
 #include "luxel/pipeline/settings/import_options.h"
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/validate.h"
 #include "luxel/solve/matrix/lxr.h"
 
 namespace luxel::python {
 namespace {
 
-using matrix::Relighter;
+/// A relighter that one thread uses at a time.
+struct SharedRelighter {
+  std::optional<matrix::Relighter> relighter;  ///< always there, once it is made
+  std::mutex mutex;                            ///< taken without the interpreter's lock
+};
+using Relighter = matrix::Relighter;
 
 struct Settings {
   pipeline::RelightSettings relight;
@@ -33,6 +42,7 @@ Settings settings_of(const py::kwargs& options) {
   arguments::add_options(command, making, {}, of_making);
   arguments::add_options(command, reading, {}, of_reading);
   arguments::add_options(command, outside, {}, of_outside);
+  for (const auto& row : making) arguments::exclude_each_other(command, row);
   int threads = 0;
   command.add_option("--threads", threads)->check(CLI::Range(0, 1024));
   parse(command, options, "luxel.Relighter");
@@ -74,24 +84,30 @@ Result<Relighter> open(const std::filesystem::path& path) {
   return Relighter::make(std::move(data), {.direct_at_points = true});
 }
 
-Relighter make(const py::object& scene, const py::object& callback, const py::kwargs& options) {
+std::unique_ptr<SharedRelighter> make(const py::object& scene, const py::object& callback,
+                                      const py::kwargs& options) {
   std::optional<scene::Scene> copy;
   std::filesystem::path file;
   if (py::isinstance<scene::Scene>(scene))
     copy = scene.cast<const scene::Scene&>();
   else
-    file = scene.cast<std::filesystem::path>();
+    file = path_of(scene);
   Progress progress;
+  auto out = std::make_unique<SharedRelighter>();
   if (file.extension() == ".lxr") {
     if (!options.empty()) throw py::type_error("options are for scenes; an .lxr file has its own");
-    return value_of(run(progress, callback, [&](Progress&) { return open(file); }));
+    out->relighter.emplace(
+        value_of(run(progress, callback, [&](Progress&) { return open(file); })));
+    return out;
   }
   Settings settings = settings_of(options);
   settings.relight.scene = copy ? "the scene" : file;
+  if (const Status right = pipeline::check_making(settings.relight); !right) raise(right.error());
   std::vector<std::string> warnings;
-  Relighter out = value_of(run(progress, callback, [&](Progress& p) {
+  out->relighter.emplace(value_of(run(progress, callback, [&](Progress& p) {
+    const ThreadLimit limit(settings.relight.threads);
     return prepare(std::move(copy), settings, warnings, p);
-  }));
+  })));
   warn(warnings);
   return out;
 }
@@ -104,36 +120,56 @@ void check_lights(const std::vector<scene::PunctualLight>& lights) {
                             "Relighter does not know");
 }
 
-/// Fields of luxel.Relit, in their order.
-py::tuple update(Relighter& self, const scene::Scene& lights, const py::object& emission) {
-  check_lights(lights.lights);
-  const auto radiance = rows_or_none<Vec3, float>(emission, "emission");
-  const size_t materials = self.data().material_name.size();
-  if (!radiance.empty() && radiance.size() != materials)
+void check_emission(const std::vector<Rgb>& emission, size_t materials) {
+  if (emission.size() != materials)
     throw py::value_error("emission must have a row for each of " + std::to_string(materials) +
                           " materials");
-  const matrix::Relit* relit = nullptr;
-  {
-    const py::gil_scoped_release without_lock;
-    self.update({.punctual = lights.lights, .emission = radiance, .background = lights.background});
-    relit = &self.latest();
-  }
-  return py::make_tuple(array_of_vectors(relit->direct), array_of_vectors(relit->indirect),
-                        array_of_vectors(relit->direct_at_points),
-                        array_of_vectors(relit->indirect_at_points));
+  for (size_t i = 0; i < emission.size(); ++i)
+    if (min_component(emission[i]) < 0 || max_component(emission[i]) > scene::kBrightest)
+      throw py::value_error("emission[" + std::to_string(i) + "] must be from 0 to 1e15");
 }
 
-void save_lxr(const Relighter& self, const std::filesystem::path& path) {
+void check_light(const matrix::Relit& relit) {
+  for (const auto* light :
+       {&relit.direct, &relit.indirect, &relit.direct_at_points, &relit.indirect_at_points})
+    for (const Rgb e : *light)
+      if (!scene::is_held_light(e))
+        throw py::value_error("there is more light than can be held; lower the intensities");
+}
+
+/// Fields of luxel.Relit, in their order.
+py::tuple update(SharedRelighter& self, const scene::Scene& lights, const py::object& emission) {
+  check_lights(lights.lights);
+  const auto radiance = rows_or_none<Vec3, float>(emission, "emission");
+  if (!emission.is_none()) check_emission(radiance, self.relighter->data().material_name.size());
+  // Another thread may change the scene as soon as the interpreter's lock is free.
+  const std::vector<scene::PunctualLight> punctual = lights.lights;
+  const Rgb background = lights.background;
+  matrix::Relit relit;
+  {
+    const py::gil_scoped_release without_lock;
+    const std::lock_guard one_at_a_time(self.mutex);
+    self.relighter->update({.punctual = punctual, .emission = radiance, .background = background});
+    relit = self.relighter->latest();
+  }
+  check_light(relit);
+  return py::make_tuple(array_of_vectors(relit.direct), array_of_vectors(relit.indirect),
+                        array_of_vectors(relit.direct_at_points),
+                        array_of_vectors(relit.indirect_at_points));
+}
+
+void save_lxr(const SharedRelighter& self, const std::filesystem::path& path) {
+  if (path.extension() != ".lxr") throw py::value_error("the file is to end in .lxr");
   Status done;
   {
     const py::gil_scoped_release without_lock;
-    done = write_file_atomically(path, matrix::encode_lxr(self.data()));
+    done = write_file_atomically(path, matrix::encode_lxr(self.relighter->data()));
   }
   if (!done) raise(done.error());
 }
 
 const matrix::RelightData& data_of(const py::object& self) {
-  return self.cast<const Relighter&>().data();
+  return self.cast<const SharedRelighter&>().relighter->data();
 }
 
 py::array_t<float> vectors(const py::object& self, std::vector<Vec3> matrix::RelightData::*member) {
@@ -145,14 +181,15 @@ py::list options_of_relighter() {
   std::vector<Described> out;
   describe_all(pipeline::relight_options(), {}, {}, out);
   describe_all(pipeline::import_options(), {}, {}, out);
-  describe_all(pipeline::outside_light_options(), {}, {}, out);
+  describe_all(pipeline::outside_light_options(), {}, {"--ies"}, out);
   return list_of(out);
 }
 
-void add_patches(py::class_<Relighter>& type) {
+void add_patches(py::class_<SharedRelighter>& type) {
   using Data = matrix::RelightData;
   type.def_property_readonly(
-          "materials", [](const Relighter& self) { return self.data().material_name; },
+          "materials",
+          [](const SharedRelighter& self) { return self.relighter->data().material_name; },
           "Names of the materials, one for each row of update()'s emission.")
       .def_property_readonly(
           "positions", [](const py::object& self) { return vectors(self, &Data::position); },
@@ -182,9 +219,10 @@ void add_patches(py::class_<Relighter>& type) {
 }  // namespace
 
 void add_relighter(py::module_& module) {
-  py::class_<Relighter> type(module, "Relighter",
-                             "A scene prepared once, whose light then moves with all its bounces. "
-                             "It is divided into patches.");
+  py::class_<SharedRelighter> type(
+      module, "Relighter", py::is_final(),
+      "A scene prepared once, whose light then moves with all its bounces. "
+      "It is divided into patches.");
   type.def(py::init(&make), py::arg("scene"), py::kw_only(), py::arg("progress") = py::none(),
            "Prepares a Scene or the scene of a file, or opens an .lxr file. Options are those of "
            "`luxel relight`.")
@@ -206,7 +244,8 @@ void add_relighter(py::module_& module) {
           },
           "x and y of each place in the map, (m, 2); (0, 2) where places are vertices.")
       .def_property_readonly(
-          "codec_error", [](const Relighter& self) { return self.data().codec_error; },
+          "codec_error",
+          [](const SharedRelighter& self) { return self.relighter->data().codec_error; },
           "What 95 of 100 lights lose less than by the compressed matrix, relative.");
   add_patches(type);
   module.def("_options_of_relighter", &options_of_relighter);

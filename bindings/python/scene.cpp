@@ -40,20 +40,15 @@ uint32_t add_material(scene::Scene& scene, const std::string& name, const Array<
 
 /// Numbers of the materials of triangles, from one number or one for each.
 std::vector<uint32_t> materials_of(const py::object& material, size_t triangles, size_t materials) {
-  std::vector<uint32_t> out;
-  if (py::isinstance<py::int_>(material)) {
-    out.assign(triangles, material.cast<uint32_t>());
-  } else {
-    const auto array = material.cast<Array<uint32_t>>();
-    if (array.ndim() != 1 || size_t(array.size()) != triangles)
-      throw py::value_error("material must be a number, or one for each triangle");
-    out.assign(array.data(), array.data() + array.size());
-  }
-  for (const uint32_t number : out)
-    if (number >= materials)
-      throw py::value_error("there is no material " + std::to_string(number) +
+  const Array<int64_t> given = whole_numbers_of(material, "material");
+  if (given.ndim() > 1 || (given.ndim() == 1 && size_t(given.size()) != triangles))
+    throw py::value_error("material must be a number, or one for each triangle");
+  for (py::ssize_t i = 0; i < given.size(); ++i)
+    if (given.data()[i] < 0 || uint64_t(given.data()[i]) >= materials)
+      throw py::value_error("there is no material " + std::to_string(given.data()[i]) +
                             "; add_material() makes one");
-  return out;
+  if (given.ndim() == 0) return std::vector<uint32_t>(triangles, uint32_t(*given.data()));
+  return {given.data(), given.data() + given.size()};
 }
 
 void check_rows(size_t rows, size_t positions, const char* name) {
@@ -61,7 +56,7 @@ void check_rows(size_t rows, size_t positions, const char* name) {
     throw py::value_error(std::string(name) + " must have a row for each position");
 }
 
-void add_mesh(scene::Scene& scene, const Array<float>& positions, const Array<int64_t>& triangles,
+void add_mesh(scene::Scene& scene, const Array<float>& positions, const py::object& triangles,
               const py::object& material, const std::string& name, const py::object& normals,
               const py::object& uv, const py::object& lightmap_uv, const py::object& transform) {
   scene::Mesh mesh;
@@ -73,7 +68,8 @@ void add_mesh(scene::Scene& scene, const Array<float>& positions, const Array<in
   check_rows(mesh.normals.size(), mesh.positions.size(), "normals");
   check_rows(mesh.uv0.size(), mesh.positions.size(), "uv");
   check_rows(mesh.uv1.size(), mesh.positions.size(), "lightmap_uv");
-  for (const auto& corners : rows_of<std::array<int64_t, 3>>(triangles, "triangles")) {
+  for (const auto& corners :
+       rows_of<std::array<int64_t, 3>>(whole_numbers_of(triangles, "triangles"), "triangles")) {
     for (const int64_t corner : corners)
       if (corner < 0 || uint64_t(corner) >= mesh.positions.size())
         throw py::value_error("triangles name row " + std::to_string(corner) + " of " +
@@ -176,7 +172,8 @@ std::string summary_of(const scene::Scene& scene) {
 
 void add_scene(py::module_& module) {
   using scene::Scene;
-  py::class_<Scene>(module, "Scene", "Meshes, materials and lights. Lengths in metres, y is up.")
+  py::class_<Scene>(module, "Scene", py::is_final(),
+                    "Meshes, materials and lights. Lengths in metres, y is up.")
       .def(py::init<>())
       .def("add_material", &add_material, py::arg("name"), py::arg("color"), py::kw_only(),
            py::arg("emission") = 0.0f, py::arg("double_sided") = false,

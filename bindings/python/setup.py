@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import shutil
+import sysconfig
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
@@ -16,9 +17,10 @@ SOURCE = pathlib.Path(os.environ["LUXEL_SOURCE"])
 
 class TakeBuilt(build_ext):
     def build_extension(self, extension):
-        built = list(pathlib.Path(os.environ["LUXEL_PYTHON"]).glob("luxel/_luxel.*.so"))
+        suffix = sysconfig.get_config_var("EXT_SUFFIX")  # a module is for one version of Python
+        built = list(pathlib.Path(os.environ["LUXEL_PYTHON"]).glob("luxel/_luxel" + suffix))
         if len(built) != 1:
-            raise SystemExit("LUXEL_PYTHON names no folder with luxel/_luxel.*.so; `make python` builds it")
+            raise SystemExit("LUXEL_PYTHON has no luxel/_luxel" + suffix + "; `make python` builds it for the Python that CMake finds")
         target = pathlib.Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(built[0], target.parent / built[0].name)

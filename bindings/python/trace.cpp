@@ -26,6 +26,14 @@ std::unique_ptr<Tracer> make_tracer(const scene::Scene& scene) {
   return out;
 }
 
+/// Embree squares these numbers in single precision. Raises ValueError.
+void check_size(const std::vector<Vec3>& rows, const std::string& name) {
+  constexpr float kMost = 1e18f;
+  for (size_t i = 0; i < rows.size(); ++i)
+    if (std::max(max_component(rows[i]), -min_component(rows[i])) > kMost)
+      throw py::value_error(name + "[" + std::to_string(i) + "] is too large; rays go up to 1e18");
+}
+
 std::vector<trace::Ray> rays_of(const Array<float>& origins, const Array<float>& directions,
                                 float t_min, float t_max) {
   const std::vector<Vec3> from = rows_of<Vec3>(origins, "origins");
@@ -33,6 +41,7 @@ std::vector<trace::Ray> rays_of(const Array<float>& origins, const Array<float>&
   if (from.size() != to.size())
     throw py::value_error("origins and directions must have the same number of rows");
   if (!(t_min >= 0 && t_max >= t_min)) throw py::value_error("0 <= t_min <= t_max must hold");
+  check_size(from, "origins"), check_size(to, "directions");
   std::vector<trace::Ray> rays(from.size());
   for (size_t i = 0; i < rays.size(); ++i) rays[i] = {from[i], t_min, to[i], t_max};
   return rays;
@@ -78,7 +87,7 @@ py::array_t<bool> occluded(const Tracer& self, const Array<float>& origins,
 }  // namespace
 
 void add_trace(py::module_& module) {
-  py::class_<Tracer>(module, "Tracer",
+  py::class_<Tracer>(module, "Tracer", py::is_final(),
                      "A scene as it was when this was made, sorted for many calls of luxel.trace() "
                      "and luxel.occluded().")
       .def(py::init(&make_tracer), py::arg("scene"))

@@ -2,6 +2,7 @@
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cover.h"
+#include "luxel/atlas/pages.h"
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
@@ -24,17 +25,30 @@ UvTriangle triangle_at(const Atlas& atlas, uint32_t t) {
   return uv_triangle({to_double(c[0]), to_double(c[1]), to_double(c[2])});
 }
 
-/// A place on the border x = resolution belongs to the last column.
-Span kept_inside(Span span, int resolution) {
-  return {std::clamp(span.begin, 0, resolution - 1), std::clamp(span.end, 1, resolution)};
+/// Columns and rows of a page.
+struct PageSpans {
+  Span columns, rows;
+};
+std::vector<PageSpans> spans_of_pages(const Atlas& atlas) {
+  std::vector<PageSpans> out;
+  for (const Page& p : pages_of(atlas)) out.push_back({{p.x, p.x + p.side}, {p.y, p.y + p.side}});
+  return out;
+}
+
+/// A place on the border at the end belongs to the last column or row of its page.
+Span kept_inside(Span span, Span page) {
+  return {std::clamp(span.begin, page.begin, page.end - 1),
+          std::clamp(span.end, page.begin + 1, page.end)};
 }
 
 /// The triangles that touch each band of rows, in ascending order.
 std::vector<std::vector<uint32_t>> bin_triangles(const Atlas& atlas) {
   const int bands = (atlas.resolution + kBandRows - 1) / kBandRows;
   std::vector<std::vector<uint32_t>> bins{size_t(bands)};
+  const std::vector<PageSpans> pages = spans_of_pages(atlas);
   for (uint32_t t = 0; t < atlas.corners.size(); ++t) {
-    const Span rows = kept_inside(touched_rows(triangle_at(atlas, t)), atlas.resolution);
+    const Span rows =
+        kept_inside(touched_rows(triangle_at(atlas, t)), pages[page_of(atlas, t)].rows);
     for (int b = rows.begin / kBandRows; b <= (rows.end - 1) / kBandRows; ++b)
       bins[size_t(b)].push_back(t);
   }
@@ -81,29 +95,33 @@ std::vector<Owner> find_owners(const Atlas& atlas, const std::vector<uint32_t>& 
   const auto owner = [&](int i, int j) -> Owner& {
     return owners[size_t(j - rows.begin) * size_t(n) + size_t(i)];
   };
-  const auto rows_of = [&](const UvTriangle& t) {
-    const Span all = kept_inside(touched_rows(t), n);
+  const std::vector<PageSpans> pages = spans_of_pages(atlas);
+  const auto rows_of = [&](const UvTriangle& t, const PageSpans& page) {
+    const Span all = kept_inside(touched_rows(t), page.rows);
     return Span{std::max(all.begin, rows.begin), std::min(all.end, rows.end)};
   };
   for (const uint32_t number : bin) {
     const UvTriangle t = triangle_at(atlas, number);
-    const Span mine = rows_of(t);
+    const PageSpans& page = pages[page_of(atlas, number)];
+    const Span mine = rows_of(t, page);
     for (int j = mine.begin; j < mine.end; ++j) {
       const Span s = centre_texels(t, j, CentreRule::inside_or_border);
-      for (int i = std::max(0, s.begin); i < std::min(n, s.end); ++i)
+      for (int i = std::max(page.columns.begin, s.begin); i < std::min(page.columns.end, s.end);
+           ++i)
         if (!owner(i, j).centre) owner(i, j) = {number, true, 1};
     }
   }
   for (const uint32_t number : bin) {
     const UvTriangle t = triangle_at(atlas, number);
-    const Span mine = rows_of(t);
+    const PageSpans& page = pages[page_of(atlas, number)];
+    const Span mine = rows_of(t, page);
     for (int j = mine.begin; j < mine.end; ++j) {
       Span s = touched_texels(t, t.area2 == 0 ? std::min(j, touched_rows(t).end - 1) : j);
       if (s.empty()) {
-        if (t.area2 > 0 || j != n - 1) continue;
-        s = touched_texels(t, touched_rows(t).begin);  // lies on the border y = resolution
+        if (t.area2 > 0 || j != page.rows.end - 1) continue;
+        s = touched_texels(t, touched_rows(t).begin);  // lies on the page's lower border
       }
-      s = kept_inside(s, n);
+      s = kept_inside(s, page.columns);
       for (int i = s.begin; i < s.end; ++i) {
         Owner& o = owner(i, j);
         if (o.centre) continue;

@@ -96,6 +96,25 @@ TEST(Rasterise, TrianglesWithoutAreaAndOnTheBorderGetTexels) {
   }
 }
 
+// Squeezed to lines on the lower and the right border of the first of two pages, with a gap
+// between.
+TEST(Rasterise, TrianglesOnTheBorderOfAPageStayOnIt) {
+  Atlas atlas = atlas_of(22, {{Vec2{1, 10}, Vec2{5, 10}, Vec2{9, 10}},
+                              {Vec2{10, 1}, Vec2{10, 5}, Vec2{10, 9}},
+                              {Vec2{13, 1}, Vec2{21, 1}, Vec2{13, 9}}});
+  atlas.pages = {{0, 0, 10}, {12, 0, 10}};
+  atlas.page = {0, 0, 1};
+  std::array<size_t, 3> texels{};
+  for (const Texel& t : rasterise({}, atlas).texels) {
+    ++texels[t.triangle_number];
+    EXPECT_LT(t.y, 10);
+    if (t.triangle_number < 2) {
+      EXPECT_LT(t.x, 10);
+    }
+  }
+  for (const size_t count : texels) EXPECT_GT(count, 0u);
+}
+
 // 20 bands of rows for three members: triangles that reach over several bands, and empty ones.
 TEST(Rasterise, IsSharedOutByATeam) {
   std::vector<std::array<Vec2, 3>> corners(50);

@@ -89,12 +89,16 @@ void remove_left_overs(std::span<const std::filesystem::path> files) {
     std::error_code error;
     std::filesystem::directory_iterator entry(folder, error);
     for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
-      if (names.contains(left_over_of(entry->path().filename()))) ::unlink(entry->path().c_str());
+      if (const std::string name = left_over_of(entry->path().filename());
+          !name.empty() && names.contains(name))
+        ::unlink(entry->path().c_str());
   }
 }
 
 Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
                                       std::span<const std::byte> bytes) {
+  if (!path.has_filename())
+    return fail(ErrorCode::io, "cannot write '{}': it names no file", path.string());
   // Renaming onto a folder would fail too, but after the files before this one got their names.
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))

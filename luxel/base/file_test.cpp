@@ -105,6 +105,13 @@ TEST_F(AtomicFiles, NoneAppearsWhenOneCannotBeWritten) {
   EXPECT_EQ(names(), (std::set<std::string>{"a"}));
 }
 
+// What a path without a name was once taken for: the name of every file that is no left-over.
+TEST_F(AtomicFiles, APathWithoutANameIsAnErrorAndHarmsNothing) {
+  std::ofstream(folder_ / "other") << "stays";
+  EXPECT_FALSE(write_file_atomically(folder_ / "", bytes_of("new")));
+  EXPECT_EQ(text_of(folder_ / "other"), "stays");
+}
+
 TEST_F(AtomicFiles, AFolderInTheWayIsAnError) {
   fs::create_directory(folder_ / "a");
   const Status status = write_file_atomically(folder_ / "a", bytes_of("x"));

@@ -134,8 +134,12 @@ Ends outermost(const Pixels& pixels) {
       for (size_t b = 0; b < 3; ++b)
         covariance[a][b] +=
             pixels.weight[i] * (pixels.value[i][a] - mean[a]) * (pixels.value[i][b] - mean[b]);
-  // Its largest eigenvector, by repeated products.
-  Floats axis{1, 1, 1};
+  // Its largest eigenvector, by repeated products. A fixed start could lie at right angles to it.
+  size_t most = 0;
+  for (size_t c = 1; c < 3; ++c)
+    if (covariance[c][c] > covariance[most][most]) most = c;
+  Floats axis = covariance[most];
+  if (axis == Floats{}) axis = {1, 1, 1};
   for (int k = 0; k < 8; ++k) {
     Floats next{};
     float largest = 0;
@@ -234,7 +238,7 @@ struct BitWriter {
     for (int k = 0; k < bits; ++k, ++at)
       if (value >> k & 1) to[at / 8] |= std::byte(1 << at % 8);
   }
-  /// Bits [from, to) of a value, the highest first.
+  /// Bits [from, end) of a value, the highest first.
   void put_reversed(uint32_t value, int from, int end) {
     for (int k = end - 1; k >= from; --k) put(value >> k & 1, 1);
   }

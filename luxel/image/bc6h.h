@@ -13,7 +13,7 @@ namespace luxel::image {
 /// edge repeats the edge. Pixels whose fourth channel is 0 and whose colour is black count for
 /// nothing, for nobody looks at them.
 ///
-/// Of the format's 14 kinds of blocks these have the four without a partition. That fits light,
+/// The format has 14 kinds of blocks; these are the four without a partition. That fits light,
 /// which is smooth nearly everywhere; where an edge of a shadow and a change of colour meet in a
 /// block, a partition would do better.
 std::vector<std::byte> encode_bc6h(const HalfImage& image);

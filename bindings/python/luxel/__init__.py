@@ -33,7 +33,7 @@ from . import _luxel
 from ._luxel import Bake, Error, Relighter, Scene, Tracer, __version__, bake, load
 
 __all__ = [
-    "Bake", "Error", "Hits", "Relighter", "Relit", "Scene", "Tracer", "ViewFactors", "bake", "compare", "load",
+    "Bake", "Error", "Hits", "Relighter", "Relit", "Scene", "Tracer", "bake", "compare", "load",
     "occluded", "trace", "view_factors",
 ]
 
@@ -84,8 +84,9 @@ def _save(self, folder, *, progress=None):
     return _json.loads(self._save(folder, progress))
 
 
-Bake.on_map = _on_map
-Bake.save = _save
+for _name, _function in {"on_map": _on_map, "save": _save}.items():
+    _function.__name__, _function.__qualname__ = _name, "Bake." + _name
+    setattr(Bake, _name, _function)
 
 
 class Relit(_NamedTuple):
@@ -106,12 +107,16 @@ def _update(self, lights, *, emission=None):
     return Relit(*self._update(lights, emission))
 
 
+_update.__name__, _update.__qualname__ = "update", "Relighter.update"
 Relighter.update = _update
 
 
 def __getattr__(name):
     if name == "ViewFactors":  # later than the rest: without scipy everything else works
-        from ._factors import ViewFactors
+        try:
+            from ._factors import ViewFactors
+        except ImportError as error:
+            raise AttributeError(f"luxel.ViewFactors needs scipy: {error}") from error
         return ViewFactors
     raise AttributeError(f"module 'luxel' has no attribute {name!r}")
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 import scipy.sparse
 
 __all__ = [
-    "Bake", "Error", "Hits", "Relighter", "Relit", "Scene", "Tracer", "ViewFactors", "bake", "compare", "load",
+    "Bake", "Error", "Hits", "Relighter", "Relit", "Scene", "Tracer", "bake", "compare", "load",
     "occluded", "trace", "view_factors",
 ]
 __version__: str
@@ -202,7 +202,6 @@ class Relighter:
         sun: Value | None = ...,  # A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it
         environment: Value | None = ...,  # Equirectangular .hdr or .exr of the surroundings, turned and scaled
         sky: Value | None = ...,  # A clear sky with its sun in lux, by the sun's bearing and elevation or by date, time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity 1 to 10 (2)
-        ies: Values | None = ...,  # The distribution of a point or spot light from an IES file; may be given for several
         # end: relighter
     ) -> None: ...
     def update(self, lights: Scene, *, emission: npt.ArrayLike | None = ...) -> Relit: ...

@@ -177,7 +177,7 @@ std::string codec_names() {
   return names;
 }
 
-Status check(const RelightSettings& s) {
+Status check_making(const RelightSettings& s) {
   LUXEL_TRY_STATUS(check_all(matrix_options(), s.matrix));
   LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
   if (matrix::looks_at_all_pairs(codec) && s.matrix.patches.count > matrix::kMaxDensePatches)
@@ -192,8 +192,6 @@ Status check(const RelightSettings& s) {
     return fail(ErrorCode::bad_setting,
                 "--ies {}={}: .lxr files do not keep light profiles; leave it out",
                 s.outside.ies[0].light, s.outside.ies[0].file.string());
-  if (s.output.extension() != ".lxr")
-    return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
   if (!(s.max_error >= 1e-5 && s.max_error <= 1))
     return fail(ErrorCode::bad_setting, "--max-error {} is outside 0.00001 to 1", s.max_error);
   if (s.bounces > 1000)
@@ -202,7 +200,13 @@ Status check(const RelightSettings& s) {
   BakeSettings map;  // the ranges of a lightmap
   map.resolution = s.resolution, map.texels_per_metre = s.texels_per_metre, map.scene = s.scene;
   map.output = s.output, map.threads = s.threads, map.seed = s.seed;
-  LUXEL_TRY_STATUS(check(map));
+  return check(map);
+}
+
+Status check(const RelightSettings& s) {
+  LUXEL_TRY_STATUS(check_making(s));
+  if (s.output.extension() != ".lxr")
+    return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
   return check_output_file(s.output);
 }
 

@@ -60,7 +60,9 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
 Result<nlohmann::json> write_relightable(const RelightSettings& settings, const Relightable& made,
                                          Progress& progress);
 
-/// Errors (bad_setting): settings out of range. Errors of files: settings.output cannot be written.
+/// Errors (bad_setting): settings out of range. settings.output is not looked at.
+Status check_making(const RelightSettings& settings);
+/// check_making(). Errors of files: settings.output cannot be written.
 Status check(const RelightSettings& settings);
 
 /// Reads settings.scene, prepares it and writes settings.output. Returns what write_relightable()

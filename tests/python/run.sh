@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs a test of the Python module with the Python that has what it needs.
 #
-#   tests/python/run.sh module LUXEL FOLDER        test_luxel.py, and the types
+#   tests/python/run.sh module LUXEL FOLDER        test_*.py, and the types
 #   tests/python/run.sh notebooks LUXEL FOLDER     runs examples/python/*.ipynb
 #   tests/python/run.sh wheel LUXEL FOLDER         makes a wheel, installs it in a folder, bakes with it
 #
@@ -32,7 +32,8 @@ export PYTHONDONTWRITEBYTECODE=1
 case $what in
   module)
     export PYTHONPATH="$built"
-    "$python" -W ignore "$root/tests/python/test_luxel.py"
+    "$python" -W ignore "$root/tests/python/test_bakes.py"
+    "$python" -W ignore "$root/tests/python/test_light_and_rays.py"
     "$python" "$root/bindings/python/make_stub.py" --check
     ;;
   notebooks)

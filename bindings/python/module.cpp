@@ -6,6 +6,7 @@ PYBIND11_MODULE(_luxel, module) {
   using namespace luxel::python;
   module.attr("__version__") = std::string(luxel::pipeline::kVersion);
   add_error(module);
+  add_stop_at_exit(module);
   add_scene(module);
   add_trace(module);
   add_bake(module);

@@ -1,5 +1,10 @@
 #include "bindings/python/work.h"
 
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+
 namespace luxel::python {
 namespace {
 
@@ -7,6 +12,34 @@ namespace {
 PyObject*& error_class() {
   static PyObject* made = nullptr;
   return made;
+}
+
+/// What runs in any thread of this interpreter.
+struct AllWork {
+  std::mutex mutex;
+  std::condition_variable is_less;
+  std::set<Progress*> progresses;
+  bool is_ending = false;
+};
+AllWork& all_work() {
+  static AllWork all;
+  return all;
+}
+
+void stop_all() {
+  AllWork& all = all_work();
+  const py::gil_scoped_release without_lock;  // the work needs it to end
+  std::unique_lock lock(all.mutex);
+  all.is_ending = true;
+  for (Progress* progress : all.progresses) progress->request_cancel();
+  all.is_less.wait(lock, [&] { return all.progresses.empty(); });
+}
+
+/// A sentence, which may name a file whose name is no UTF-8.
+py::object text_of_sentence(const std::string& sentence) {
+  PyObject* text = PyUnicode_DecodeUTF8(sentence.data(), Py_ssize_t(sentence.size()), "replace");
+  if (!text) throw py::error_already_set();
+  return py::reinterpret_steal<py::object>(text);
 }
 
 PyObject* class_of(ErrorCode code) {
@@ -32,7 +65,7 @@ PyObject* class_of(ErrorCode code) {
 }  // namespace
 
 void raise(const Error& error) {
-  PyErr_SetString(class_of(error.code), error.message.c_str());
+  PyErr_SetObject(class_of(error.code), text_of_sentence(error.message).ptr());
   throw py::error_already_set();
 }
 
@@ -46,7 +79,24 @@ void add_error(py::module_& module) {
 
 void warn(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences)
-    if (PyErr_WarnEx(PyExc_UserWarning, sentence.c_str(), 1) != 0) throw py::error_already_set();
+    if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", text_of_sentence(sentence).ptr()) != 0)
+      throw py::error_already_set();
+}
+
+RunningWork::RunningWork(Progress& progress) : progress_(&progress) {
+  const std::lock_guard lock(all_work().mutex);
+  if (all_work().is_ending) throw std::runtime_error("Python is about to end");
+  all_work().progresses.insert(progress_);
+}
+RunningWork::~RunningWork() {
+  const std::lock_guard lock(all_work().mutex);
+  all_work().progresses.erase(progress_);
+  all_work().is_less.notify_all();
+}
+
+void add_stop_at_exit(py::module_& module) {
+  module.def("_stop_all", &stop_all);
+  py::module_::import("atexit").attr("register")(module.attr("_stop_all"));
 }
 
 void report(const py::object& callback, const Progress& progress) {

@@ -42,11 +42,28 @@ void warn(const std::vector<std::string>& sentences);
 /// all; the latter two are None where they are not known.
 void report(const py::object& callback, const Progress& progress);
 
+/// Work that runs while this lives. Python's end waits for it, because a thread that asks for the
+/// interpreter's lock after that is ended in the middle of what it does.
+class RunningWork {
+ public:
+  /// Raises RuntimeError when Python ends.
+  explicit RunningWork(Progress& progress);
+  ~RunningWork();
+  RunningWork(const RunningWork&) = delete;
+  RunningWork& operator=(const RunningWork&) = delete;
+
+ private:
+  Progress* progress_;
+};
+/// Makes a function for Python's atexit, which stops all work and waits for it.
+void add_stop_at_exit(py::module_& module);
+
 /// Runs work(Progress&) on a thread of its own, and looks ten times a second whether Python wants
 /// it to stop. `callback` is None, or what report() calls; what it raises stops the work.
 template <class Work>
 auto run(Progress& progress, const py::object& callback, Work&& work) {
   using Out = decltype(work(progress));
+  const RunningWork running(progress);
   std::optional<Out> out;
   std::exception_ptr failed;
   std::atomic<bool> is_over{false};

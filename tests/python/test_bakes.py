@@ -6,6 +6,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -148,6 +149,10 @@ class Options(unittest.TestCase):
             with self.subTest(call), self.assertRaisesRegex(OSError, "nowhere.glb"):
                 call("nowhere.glb")
 
+    def test_names_that_are_no_utf8_are_said(self):
+        with self.assertRaisesRegex(OSError, "nowhere"):
+            luxel.load(b"nowhere\xff.glb")
+
     def test_lists_and_switches_are_those_of_the_command(self):
         a = luxel.bake(square(), resolution=16, samples=4, background=(1, 2, 3), denoise=False, stitch=False)
         b = luxel.bake(square(), resolution=16, samples=4, background="1,2,3", no_denoise=True, no_stitch=True)
@@ -189,7 +194,16 @@ class LongWork(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             luxel.bake(CORNELL_BOX, **self.LONG)
         self.assertLess(time.monotonic() - start, 20)
-        self.assertEqual(luxel.bake(square(), resolution=16, samples=4, background=(1, 1, 1)).lightmap.shape, (16, 16, 4))
+        again = luxel.bake(square(), resolution=16, samples=4, background=(1, 1, 1))
+        self.assertEqual(again.lightmap.shape, (16, 16, 4))
+
+    def test_python_ends_while_a_thread_bakes(self):
+        script = ("import threading, time, luxel\n"
+                  f"bake = lambda: luxel.bake({str(CORNELL_BOX)!r}, resolution=512, samples=20000)\n"
+                  "threading.Thread(target=bake, daemon=True).start()\n"
+                  "time.sleep(0.7)\n")
+        ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
 
     def test_other_threads_run_meanwhile(self):
         is_over, turns = False, 0

@@ -2,6 +2,7 @@
 
 make_options_page.py reads the options; this adds what stands around them.
 """
+import pathlib
 import re
 import subprocess
 import sys
@@ -104,3 +105,19 @@ def takes(option):
     if value == "text" or "FILE" in value:
         return "files"
     return "choices" if choices(option) else "nothing"
+
+
+def run_script(usage, self_test, write):
+    """What a script does that makes files of the help of a program: write(LUXEL, FOLDER). Returns its exit code."""
+    name, arguments = pathlib.Path(sys.argv[0]).stem, sys.argv[1:]
+    if arguments == ["--self-test"]:
+        return self_test()
+    if len(arguments) != 2 or arguments[0].startswith("-"):
+        print(usage)
+        return 2
+    luxel, folder = arguments
+    if not pathlib.Path(luxel).exists():
+        print(f"{name}: there is no program {luxel}", file=sys.stderr)
+        return 1
+    write(luxel, pathlib.Path(folder))
+    return 0

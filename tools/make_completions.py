@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from command_help import Command, choices, read_all, takes
+from command_help import Command, choices, read_all, run_script, takes
 
 MOST_CHARACTERS = 90  # of a meaning beside an option
 MADE = "Made by tools/make_completions.py from the help of the program."
@@ -314,19 +314,5 @@ def self_test():
     return 1 if faults else 0
 
 
-def main():
-    arguments = sys.argv[1:]
-    if arguments == ["--self-test"]:
-        return self_test()
-    if len(arguments) != 2 or arguments[0].startswith("-"):
-        print(__doc__)
-        return 2
-    if not pathlib.Path(arguments[0]).exists():
-        print(f"make_completions: there is no program {arguments[0]}", file=sys.stderr)
-        return 1
-    write(pathlib.Path(arguments[1]), read_all(arguments[0]))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_script(__doc__, self_test, lambda luxel, folder: write(folder, read_all(luxel))))

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-from command_help import Command, read_all, version
+from command_help import Command, read_all, run_script, version
 
 # What troff would take for a minus, a quote or an accent of its own.
 SPECIAL = {"\\": "\\e", "-": "\\-", "'": "\\(aq", "`": "\\(ga", "^": "\\(ha", "~": "\\(ti"}
@@ -185,19 +185,5 @@ def man_warnings(file):
     return run.stderr.strip() or ("" if run.returncode == 0 else f"man ended with code {run.returncode}")
 
 
-def main():
-    arguments = sys.argv[1:]
-    if arguments == ["--self-test"]:
-        return self_test()
-    if len(arguments) != 2 or arguments[0].startswith("-"):
-        print(__doc__)
-        return 2
-    if not pathlib.Path(arguments[0]).exists():
-        print(f"make_man_pages: there is no program {arguments[0]}", file=sys.stderr)
-        return 1
-    write_pages(arguments[0], pathlib.Path(arguments[1]))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_script(__doc__, self_test, write_pages))

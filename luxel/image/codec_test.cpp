@@ -60,7 +60,7 @@ TEST(Exr, ManyPartsAreOneFile) {
   EXPECT_EQ(back->data, image.data);
 }
 
-// Of noise no two parts are alike.
+// A picture of noise: no two parts are alike.
 TEST(Exr, IsCompressedByATeam) {
   RandomStream random(6);
   Image image(30, 5 * 64 + 13, 3);

@@ -11,7 +11,9 @@ The rules:
 - in README.md and docs/guide/ no sentence has more than 35 words, outside tables and code;
 - every --option in backticks, or in a command of a code block that starts with luxel, is a line of FILE (one name per
   line, with or without --; without FILE this is skipped);
-- every `luxel COMMAND` in backticks or in a code block is a command of luxel.
+- every `luxel COMMAND` in backticks or in a code block is a command of luxel;
+- commands of code blocks write to no file or folder that the checkout has, other than baked/ and build/: by options for
+  output, by >, as targets of cp, mv and tee, or as arguments of tools that make files.
 """
 import pathlib
 import re
@@ -22,6 +24,7 @@ import urllib.parse
 COMMANDS = {"info", "bake", "merge", "render", "compare", "factors", "relight", "probe", "lux", "bench", "doctor"}
 ALWAYS = {"help", "version"}
 MOST_CHARACTERS, MOST_WORDS = 120, 35
+IGNORED = {"baked", "build"}  # by git
 
 FENCE = re.compile(r"\s*(```+|~~~+)")
 ITEM = re.compile(r"^\s*([-*+]|\d{1,2}[.)])\s+")
@@ -34,6 +37,9 @@ HTML = re.compile(r"<(?:img|a|source)\b[^>]*?\b(?:src|href)\s*=\s*[\"']([^\"']*)
 OPTION = re.compile(r"(?<![\w-])--([a-z][a-z0-9-]*)")
 PROGRAM = re.compile(r"(?:[^\s`]*/)?luxel(?=\s|$)")
 COMMAND = re.compile(r"(?:^|[\s;|&(])(?:[^\s`]*/)?luxel\s+([a-z][a-z-]*)(?=[\s.,;:)|&]|$)")
+WRITTEN = re.compile(r"(?<=\s)(?:(?:-o|--output|--report|--screenshot|--frame-times)(?:\s+|=)|\d?>>?\s*)(\S+)")
+COPIES = re.compile(r"\s*(?:cp|mv|tee)\s.*?(\S+)\s*$")
+MAKES = re.compile(r"(?:^|.*\s)\S*(?:lightmap_png\.py|luxel_draw_skies|blender_addon\.sh)\s+(.*)")
 
 
 class Line:
@@ -211,6 +217,23 @@ def command_faults(path, lines, options):
                 yield f"{path}:{number}: --{name}: there is no such option"
 
 
+def written_by(text):
+    """The paths that a command writes to, as far as its line tells."""
+    for part in re.split(r"[;|&]+", text):
+        yield from WRITTEN.findall(part)
+        yield from COPIES.findall(part)
+        for arguments in MAKES.findall(part):
+            yield from arguments.split()
+
+
+def output_faults(root, path, lines):
+    for number, text, span in commands_of(lines):
+        for file in () if span else written_by(re.sub(r"(^|\s)#\s.*$", "", text)):
+            first = (*pathlib.PurePosixPath(file.strip("'\"")).parts, ".")[0]
+            if not file.startswith("/") and first not in IGNORED and (root / first).exists():
+                yield f"{path}:{number}: {file}: commands of pages write below baked/"
+
+
 def pages(root):
     named = [root / name for name in ("README.md", "ARCHITECTURE.md", "CHANGELOG.md")]
     return [file for file in named if file.exists()] + sorted((root / "docs").rglob("*.md"))
@@ -233,6 +256,7 @@ def faults(root, options=None):
         if path == "README.md" or path.startswith("docs/guide/"):
             yield from sentence_faults(path, lines)
         yield from command_faults(path, lines, options)
+        yield from output_faults(root, path, lines)
 
 
 def read_options(file):
@@ -251,6 +275,7 @@ luxel computes light. See [the guide](docs/guide/a.md#of-lights-and-luxel-bake) 
 
 ```
 luxel bench rays -o x
+cp docs/images/a.png baked/a.png; tools/lightmap_png.py baked/a.glb baked/a.png > baked/log  # tee docs
 {LONG}{LONG}
 ```
 
@@ -301,6 +326,12 @@ BAD = [
     ("docs/method/m.md", "```sh\nx/luxel bake a --bad\n```", "m.md:9: --bad: there is no such option"),
     ("docs/method/m.md", "`luxel fly`", "luxel fly: there is no such command"),
     ("docs/method/m.md", "    build/release/bin/luxel fly a", "luxel fly: there is no such command"),
+    ("README.md", "    luxel bake a \\\n      -o docs/images/b.png", "docs/images/b.png: commands of pages write below baked/"),
+    ("README.md", "    luxel-view a --screenshot=./docs/$a.png; done", "./docs/$a.png: commands"),
+    ("README.md", "    luxel bake a -o .", "README.md:25: .: commands"),
+    ("README.md", "    x --csv 2> docs/a.csv", "docs/a.csv: commands"),
+    ("README.md", "    mv baked/a.png baked/b.png 'docs/images'", "'docs/images': commands"),
+    ("README.md", "    for a in 1 2; do tools/lightmap_png.py baked/a.glb docs/$a.png $a; done", "docs/$a.png: commands"),
 ]
 
 

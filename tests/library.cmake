@@ -32,9 +32,8 @@ function(build source name)
   run(${CMAKE_COMMAND} --build ${FOLDER}/build/${name})
 endfunction()
 set(examples ${SOURCE}/examples/library)
-# Where there is neither Assimp nor CGAL, nor what else only the pipeline needs.
-build(${examples}/relight relight -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON
-      -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON -DCMAKE_DISABLE_FIND_PACKAGE_TinyGLTF=ON
+# Where there is nothing of what only the pipeline needs.
+build(${examples}/relight relight -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DCMAKE_DISABLE_FIND_PACKAGE_TinyGLTF=ON
       -DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON)
 run(${luxel} relight ${SOURCE}/scenes/cornell-box.glb --patches 300 --rays 256 --target none
     -o ${FOLDER}/box.lxr)

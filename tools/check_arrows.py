@@ -21,6 +21,7 @@ PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
 PRINT_EXCEPT = {"luxel/base/check.cpp",  # says which contract broke, then aborts
                 "bench/child.cpp"}  # ends the child process that it forked to measure
 TBB_ONLY = {"luxel/base/parallel.h", "luxel/base/parallel.cpp"}
+CGAL_ONLY = "luxel/base/exact_predicates.cpp"
 TOP = ("apps", "bench", "bindings", "examples")  # rooms that do not lie in luxel/
 
 
@@ -92,6 +93,8 @@ def include_faults(table, path, room, code):
         quote, name = match.groups()
         if re.match(r"(oneapi/)?tbb/|execution$", name) and path not in TBB_ONLY:
             yield f"{where}: includes <{name}>; only luxel/base/parallel.* may (use its loops)"
+        if name.startswith("CGAL/") and path != CGAL_ONLY:
+            yield f"{where}: includes <{name}>; only {CGAL_ONLY} may"
         if quote != '"':
             continue
         target = table.room_of(name)
@@ -192,6 +195,7 @@ GOOD = {
                        "| apps/cli | c | pipeline |\n",
     "luxel/base/CMakeLists.txt": "luxel_room(base LIBS fmt::fmt)",
     "luxel/base/parallel.cpp": "#include <tbb/parallel_for.h>",
+    "luxel/base/exact_predicates.cpp": "#include <CGAL/kernel.h>",
     "luxel/base/check.cpp": "std::fprintf(stderr, text); std::abort();",
     "luxel/scene/CMakeLists.txt": "luxel_room(scene USES base LIBS a::b)",
     "luxel/scene/scene.h": '#include "luxel/base/vec.h"\n// printf() is not for us\nauto s = "exit(1)"; snprintf(a);',
@@ -220,6 +224,7 @@ BAD = [
     ("tests/cli_test.cpp", '#include "apps/cli/cli.h"', "nothing includes a program"),
     ("luxel/scene/s.cpp", '#include "tests/support.h"', "only tests may"),
     ("luxel/scene/s.cpp", "#include <tbb/task_group.h>", "only luxel/base/parallel.* may"),
+    ("luxel/scene/s.cpp", "#include <CGAL/kernel.h>", "only luxel/base/exact_predicates.cpp may"),
     ("luxel/scene/s_test.cpp", "#include <oneapi/tbb/mutex.h>", "only luxel/base/parallel.* may"),
     ("luxel/scene/s.cpp", '#include "vec.h"', "names no room"),
     ("luxel/scene/s.cpp", "std::cout << 1;", "prints or exits"),

@@ -20,6 +20,13 @@ trap 'rm -rf "$work"' EXIT
 cd "$root/bindings/python"  # nothing is written here
 cp -r luxel pyproject.toml setup.py "$work"
 cp "$root/LICENSE" "$work"
+# The notice of what is compiled in, with the texts that it names: setuptools takes such names.
+three=$built/../web/node_modules/three/LICENSE
+[ -e "$built/../web/made_from" ] || three=
+python3 "$root/tools/package/make_notices.py" python3-luxel "$work/NOTICE" ${three:+"$three"}
+for text in $(grep -o '/usr/share/common-licenses/[A-Z].*[0-9]' "$work/NOTICE"); do
+  cp "$text" "$work/LICENSE.${text##*/}"
+done
 cd "$work"
 LUXEL_PYTHON=$built LUXEL_SOURCE=$root "$python" setup.py --quiet bdist_wheel --dist-dir "$folder"
 ls "$folder"/luxel-*.whl

@@ -21,7 +21,7 @@ packages=(
   libjpeg-dev libwebp-dev            # JPEG and WebP textures
   libassimp-dev                      # OBJ, FBX, Collada, ...
   libeigen3-dev                      # least squares
-  libcgal-dev                        # exact predicates, constrained Delaunay triangulation
+  libcgal-dev                        # exact predicates
   zlib1g-dev                         # checksums, PNG
   libvulkan-dev libvulkan-volk-dev glslang-tools # graphics devices
   libglfw3-dev libimgui-dev libfreetype-dev      # the window and its panels

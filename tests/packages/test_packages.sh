@@ -66,9 +66,10 @@ check_files() {
     dpkg-query -W "$package" >/dev/null || fail "libluxel-dev asks for $package, which luxel was built without"
   done
   for notice in "$root"/usr/share/doc/*/copyright; do
-    for licence in 'GPL-3+' 'Draco, linked in'; do
+    for licence in 'License: LGPL-3+' 'CGAL, compiled in' 'Draco, linked in'; do
       grep -qF "$licence" "$notice" || fail "$notice says nothing of $licence"
     done
+    if grep -E '^License:.*\bGPL' "$notice"; then fail "$notice names the GPL"; fi
   done
 }
 
@@ -92,7 +93,7 @@ assert luxel.__file__.startswith('$root'), luxel.__file__
 print(luxel.bake('furnace-box.glb', resolution=16, samples=4), luxel.__version__)"
 }
 
-# The smaller one of examples/library, which looks for neither Assimp nor CGAL.
+# The smaller one of examples/library, which looks for neither Assimp nor tinygltf.
 check_library() {
   cp -r "$source/examples/library/relight" "$folder/work/relight"
   alone sh -c "cmake -G Ninja -S relight -B relight/build -DCMAKE_PREFIX_PATH='$root/usr' && cmake --build relight/build" \

@@ -54,6 +54,11 @@ case $what in
     cd "$built/../wheel_test"
     "$python" -m zipfile -e luxel-*.whl package
     ls package/luxel/__init__.pyi package/luxel/py.typed package/luxel-*.dist-info/METADATA >/dev/null
+    # The notice names what is compiled in, nothing of it is under the GPL, and the texts are there.
+    notice=$(find package/luxel-*.dist-info -name NOTICE)
+    for part in 'License: LGPL-3+' 'CGAL, compiled in' 'Draco, linked in'; do grep -qF "$part" "$notice"; done
+    if grep -E '^License:.*\bGPL' "$notice"; then exit 1; fi
+    ls "${notice%NOTICE}LICENSE.LGPL-3" "${notice%NOTICE}LICENSE.GPL-3" >/dev/null
     PYTHONPATH=$PWD/package "$python" -c "
 import luxel
 assert luxel.__file__.startswith('$PWD/package'), luxel.__file__

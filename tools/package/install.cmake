@@ -2,7 +2,7 @@
 # static libraries of the rooms, and a CMake package whose targets are luxel::pipeline and luxel::relight
 # (docs/guide/library.md). The components are the .deb files that debian.cmake makes of them.
 
-# The rooms that playing an .lxr file needs: free of Assimp and CGAL. The others need these.
+# The rooms that playing an .lxr file needs: free of Assimp and tinygltf. The others need these.
 set(luxel_relight_rooms base image scene trace atlas viewfactor transport light solve_matrix)
 set(luxel_pipeline_rooms import solve_gather solve_hemicube solve_hierarchical reference post export
     display pipeline)

@@ -12,6 +12,7 @@ luxel is built from. Shared libraries are not in it: their own packages bring th
 import os
 import pathlib
 import re
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -63,10 +64,9 @@ SYSTEM = re.compile(r"^[a-z]+\.h$")  # <unistd.h>
 
 # Debian has these texts in /usr/share/common-licenses; a copyright file names them.
 COMMON = {"Apache-2": "Apache-2.0", "Apache-2.0": "Apache-2.0", "MPL-2": "MPL-2.0", "CC0-1.0": "CC0-1.0",
-          "LGPL-2.1+": "LGPL-2.1", "GPL-3+": "GPL-3", "LGPL-3+": "LGPL-3"}
+          "LGPL-2.1+": "LGPL-2.1", "LGPL-3+": "LGPL-3"}
 COMMON_TITLES = {"Apache-2.0": "the Apache License, Version 2.0", "MPL-2.0": "the Mozilla Public License, Version 2.0",
                  "CC0-1.0": "the CC0 1.0 Universal dedication", "LGPL-2.1": "the GNU Lesser General Public License, version 2.1",
-                 "GPL-3": "the GNU General Public License, version 3",
                  "LGPL-3": "the GNU Lesser General Public License, version 3"}
 
 HEADER = """Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
@@ -77,12 +77,10 @@ Comment:
  has a paragraph below: libfoo-dev/* stands for the files of Debian's package libfoo-dev.
  Shared libraries that it uses are packages of their own, with notices of their own.
  .
- CGAL's triangulations are under the GNU General Public License, version 3 or later.
- They are compiled into hierarchical radiosity. So the programs, the Python module, and
- what links luxel::pipeline may be passed on as a whole under the terms of that license
- only: with their source code, or an offer of it. luxel's source stays under the Apache
- License 2.0, which the GNU General Public License, version 3, permits to combine.
- luxel::relight has no code of CGAL.
+ CGAL is used, and its use is covered by the GNU Lesser General Public License: code of
+ its headers is compiled in. Section 3 of that license permits to pass the result on under
+ other terms, with this notice and the texts of that license and of the GNU General Public
+ License, version 3, which it refers to. Nothing here is under the latter.
  .
  Code of GCC's runtime libraries is under the GCC Runtime Library Exception and asks for
  nothing.
@@ -97,9 +95,9 @@ Copyright: 1996-2022 Utrecht University (The Netherlands), ETH Zurich (Switzerla
            INRIA Sophia-Antipolis (France), Max-Planck-Institute Saarbruecken (Germany),
            and Tel-Aviv University (Israel)
            2008-2022 GeometryFactory (France)
-License: GPL-3+ and LGPL-3+
-Comment: CGAL, compiled in from its headers. Its 2D triangulations are under GPL-3+, its
- kernels and number types under LGPL-3+.
+License: LGPL-3+
+Comment: CGAL, compiled in from its headers: its kernels and number types. Its other parts,
+ under other licences, are not included.
 """
 EXTRA_COMMENTS = {"Dear ImGui": "Its font ProggyClean.ttf is Copyright 2004, 2005 Tristan Grimmer, License: Expat."}
 
@@ -138,6 +136,9 @@ class Licences:
         short, file = re.sub(r"^(Apache|MPL)-2$", r"\1-2.0", name), COMMON[name]
         self.texts[short] = (f" On Debian systems, the text of {COMMON_TITLES[file]},\n"
                              f" is in /usr/share/common-licenses/{file}.")
+        if file == "LGPL-3":
+            self.texts[short] += ("\n It refers to the GNU General Public License, version 3,"
+                                  "\n in /usr/share/common-licenses/GPL-3.")
         return short
 
     def add(self, name, text, part):
@@ -198,7 +199,6 @@ def notice(package, copyright_of, three):
     """The whole file. copyright_of(package) is the text of Debian's file."""
     licences = Licences()
     licences.common("Apache-2.0")
-    licences.common("GPL-3+")
     licences.common("LGPL-3+")
     paragraphs = [HEADER, CGAL]
     for part in PARTS:
@@ -235,6 +235,18 @@ def unlisted(includes):
             yield f"{file}: <{root}> is not listed: add it to INCLUDED, and to PARTS if its code gets into luxel"
 
 
+def licences_of_cgal():
+    """{licence: a header} of the CGAL headers that luxel is compiled from, as each header names it."""
+    source = ROOT / "luxel/base/exact_predicates.cpp"
+    rule = subprocess.run([os.environ.get("CXX", "c++"), "-std=c++20", "-M", "-DCGAL_DISABLE_GMP", f"-I{ROOT}", source],
+                          check=True, capture_output=True, text=True).stdout
+    found = {}
+    for header in re.findall(r"\S+/CGAL/\S+", rule):
+        named = re.search(r"SPDX-License-Identifier: (\S+)", pathlib.Path(header).read_text(encoding="utf-8"))
+        found[named[1] if named else "none"] = header
+    return found
+
+
 def check():
     includes = {}
     for file in sources():
@@ -242,6 +254,8 @@ def check():
             if "/" in path or path.endswith(".h"):
                 includes.setdefault(path.split("/")[0], file.relative_to(ROOT))
     faults = list(unlisted(includes.items()))
+    faults += [f"{header} is under {licence}" for licence, header in licences_of_cgal().items()
+               if licence not in ("LGPL-3.0-or-later", "BSL-1.0")]
     for fault in faults:
         print("make_notices:", fault)
     print(f"make_notices --check: {len(includes)} libraries and system headers, {len(faults)} faults")

@@ -6,7 +6,6 @@
 #include "luxel/scene/surface_points.h"
 #include "luxel/solve/hierarchical/hierarchical_test_support.h"
 #include "luxel/solve/hierarchical/surface.h"
-#include "luxel/solve/hierarchical/triangulate.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -38,28 +37,6 @@ TEST(Interpolant, IsEveryQuadraticFromItsSixSamples) {
       EXPECT_NEAR(value_of(r, s, t).y, f(s, t).y, 1e-5);
     }
   }
-}
-
-TEST(Triangulate, LinesBecomeEdges) {
-  const std::array<DVec2, 5> outline{DVec2{0, 0}, {2, 0}, {2, 1}, {1, 1}, {0, 1}};
-  const std::array<Segment2, 2> lines{Segment2{{0.5, 0}, {1, 1}}, {{0, 0.5}, {2, 0.25}}};
-  const Triangulation t = triangulate(outline, lines, 1e-6);
-  double area = 0;
-  for (const auto& c : t.triangles) {
-    const double twice = cross(t.points[c[1]] - t.points[c[0]], t.points[c[2]] - t.points[c[0]]);
-    EXPECT_GT(twice, 0);
-    area += twice / 2;
-    // No triangle lies on both sides of a line.
-    for (const Segment2& line : lines) {
-      bool left = false, right = false;
-      for (const uint32_t k : c) {
-        const double side = cross(line.b - line.a, t.points[k] - line.a);
-        left |= side > 1e-9, right |= side < -1e-9;
-      }
-      EXPECT_FALSE(left && right);
-    }
-  }
-  EXPECT_NEAR(area, 2, 1e-12);
 }
 
 /// Triangles per edge, each edge by its ends' places.

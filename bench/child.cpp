@@ -36,7 +36,7 @@ Result<ChildOutcome> run_in_child(const std::function<std::string()>& work) {
   int status = 0;
   rusage usage{};
   if (::wait4(child, &status, 0, &usage) != child || status != 0)
-    return fail(ErrorCode::io, "a process that measures ended before its time");
+    return fail(ErrorCode::io, "a measuring process ended early");
   out.peak_resident_bytes = uint64_t(usage.ru_maxrss) * 1024;
   return out;
 }

@@ -165,7 +165,7 @@ TEST(BadFiles, TexturesThatNeedADecoderOrAllMemoryAreNamed) {
   expect_refused(with_texture(R"({"source":0})"), 1,
                  "the picture has 100000 x 100000 pixels, must be 1 to 16384 a side");
   expect_refused(with_texture(R"({"extensions":{"KHR_texture_basisu":{"source":0}}})"), 1,
-                 "texture 0 of material 0 (wall) is there as KTX2 only");
+                 "texture 0 of material 0 (wall) exists only as KTX2");
 }
 
 TEST(BadFiles, OnlyTrianglesWithoutAreaAreNothing) {

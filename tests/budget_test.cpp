@@ -42,7 +42,7 @@ TEST(MaxError, WinsOverSamplesAndSaysSo) {
   const ScratchFolder s;
   const CommandResult r = luxel(box(s, "--max-error 0.2 --samples 4"));
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("--max-error 0.2 decides how many rays there are"));
+  EXPECT_THAT(r.err, HasSubstr("--max-error 0.2 sets the number of rays"));
   EXPECT_THAT(r.err, HasSubstr("--samples 4 is ignored"));
   EXPECT_GE(json_of(s)["error"]["samples"]["fewest"], 32);
 }
@@ -145,7 +145,7 @@ TEST(TimeBudget, IsForSamplesToSuit) {
   const ScratchFolder s;
   const CommandResult r = luxel(box(s, "--time-budget 0.01 --samples 4096"));
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 decides how many rays there are"));
+  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 sets the number of rays"));
   EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 leaves"));
   EXPECT_LT(json_of(s)["error"]["samples"]["most"], 4096);
 }
@@ -157,7 +157,7 @@ TEST(TimeBudget, EndsSolversThatCannotEndEarlier) {
     const ScratchFolder s;
     const CommandResult r = luxel(box(s, "--time-budget 0.001 --solver " + solver));
     EXPECT_EQ(r.code, 3) << solver << r.err;
-    EXPECT_THAT(r.err, HasSubstr("--time-budget 0.001 was over in the stage"));
+    EXPECT_THAT(r.err, HasSubstr("--time-budget 0.001 ran out in the stage"));
     EXPECT_THAT(r.err, HasSubstr("--solver " + solver + " has no result before its end"));
     EXPECT_FALSE(std::filesystem::exists(s.path / "out"));
   }

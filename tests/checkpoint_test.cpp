@@ -156,7 +156,7 @@ TEST_F(Checkpoint, AStoppedBakeSaysHowItGoesOnAndLeavesNothingElse) {
     command.end_with(SIGINT);
     err = command.err();
   }
-  EXPECT_EQ(err, "luxel: stopped by the user; --resume goes on from " + file_.string() + "\n");
+  EXPECT_EQ(err, "luxel: stopped by the user; --resume continues from " + file_.string() + "\n");
   EXPECT_EQ(files_in(folder_), std::set<std::string>{"checkpoint.luxel"});
 }
 
@@ -168,7 +168,7 @@ TEST_F(Checkpoint, IsLeftAloneUntilTheBakeThatStartsOverKeepsItsOwn) {
   EXPECT_EQ(slurp(file_), before);
   const CommandResult done = luxel(bake(folder_));
   ASSERT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr(file_.string() + " is of a bake that did not end; this one "
+  EXPECT_THAT(done.err, HasSubstr(file_.string() + " belongs to an unfinished bake; this bake "
                                                    "starts from the beginning"));
   EXPECT_EQ(report_in(folder_)["checkpoint"]["parts_found"], 0);
   EXPECT_EQ(files_in(folder_), kBakeFiles);
@@ -190,7 +190,7 @@ void expect_refused(const fs::path& folder, const CommandResult& result,
 
 TEST_F(Checkpoint, OfOtherSettingsIsRefusedByName) {
   leave_checkpoint(folder_);
-  const std::string is = file_.string() + " is of another bake: ";
+  const std::string is = file_.string() + " belongs to another bake: ";
   const auto refused = [&](const std::string& more, const std::string& difference,
                            const std::string& scene = kCornellBox) {
     expect_refused(folder_, luxel(bake(folder_, " --resume" + more, scene)), is + difference);
@@ -214,10 +214,10 @@ TEST_F(Checkpoint, OfAnotherSceneIsRefusedByWhatHasChanged) {
   edited.replace(edited.find("v 4 0 0"), 7, "v 5 0 0");
   scratch_.write("room.obj", edited);
   expect_refused(folder_, luxel(bake(folder_, more + " --resume", scene)),
-                 "is of another bake: mesh 'floor' has changed");
+                 "belongs to another bake: mesh 'floor' has changed");
   scratch_.write("room.obj", obj + "o more\nv 0 1 0\nv 4 1 0\nv 0 1 -4\nf 5 6 7\n");
   expect_refused(folder_, luxel(bake(folder_, more + " --resume", scene)),
-                 "is of another bake: 1 of kind mesh there, 2 here");
+                 "belongs to another bake: 1 of kind mesh there, 2 here");
 }
 
 TEST_F(Checkpoint, ThatIsDamagedIsRefused) {
@@ -249,7 +249,7 @@ TEST_F(Checkpoint, WithoutRoomOnTheDiskIsGivenUp) {
               HasSubstr("warning: cannot write " + file_.string() + ": File too large; "));
   EXPECT_EQ(slurp(folder_ / "lightmap.exr"), expected);
   EXPECT_EQ(files_in(folder_), kBakeFiles);
-  EXPECT_THAT(report_in(folder_)["warnings"].dump(), HasSubstr("what is finished from now on"));
+  EXPECT_THAT(report_in(folder_)["warnings"].dump(), HasSubstr("parts finished from now on"));
 }
 
 TEST_F(Checkpoint, TwoBakesInOneFolderAreRefused) {
@@ -260,7 +260,7 @@ TEST_F(Checkpoint, TwoBakesInOneFolderAreRefused) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     const CommandResult second = luxel(bake(folder_));
     EXPECT_EQ(second.code, 1);
-    EXPECT_THAT(second.err, HasSubstr("another bake is at work in " + folder_.string()));
+    EXPECT_THAT(second.err, HasSubstr("another bake is using " + folder_.string()));
     EXPECT_TRUE(fs::exists(folder_)) << "it belongs to the first";
     const CommandResult beside = luxel(bake(scratch_.path / "beside"));
     EXPECT_EQ(beside.code, 0) << beside.err;

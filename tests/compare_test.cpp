@@ -159,8 +159,8 @@ TEST(Compare, WhatCannotBeReadIsRefused) {
   const ScratchFolder s;
   const auto good = s.write("good.exr", exr(grey(1)));
   expect_refused(s.path / "none.exr", good, "none.exr: no such file");
-  expect_refused(good, s.write("empty.exr", ""), "empty.exr: this is no picture");
-  expect_refused(good, s.write("text.png", "hello"), "text.png: this is no picture");
+  expect_refused(good, s.write("empty.exr", ""), "empty.exr: this is not a picture");
+  expect_refused(good, s.write("text.png", "hello"), "text.png: this is not a picture");
   expect_refused(s.write("half.exr", exr(grey(1)).substr(0, 300)), good, "half.exr: ");
   expect_refused(s.write("half.hdr", hdr(grey(1)).substr(0, 70)), good,
                  "half.hdr: the HDR file ends");

@@ -49,7 +49,7 @@ TEST(NoLight, IsTheSameClearDayForEveryCommand) {
                        (s.path / "r.exr").string(),
                    s.path / "r.exr");
   };
-  constexpr const char* kSaid = "the scene has no light: lit by a clear day, --sky 135,40";
+  constexpr const char* kSaid = "the scene has no light, so a clear sky lights it, --sky 135,40";
   for (const std::function<Left(const std::string&)>& command :
        {std::function<Left(const std::string&)>(bake), {render}}) {
     const Left chosen = command(""), asked = command(" --sky 135,40");
@@ -85,7 +85,8 @@ TEST(NoLight, SaysWhyAClosedRoomIsBlack) {
     return luxel("bake " + file + " --resolution 16 --samples 16 -o " + (s.path / "b").string())
         .err;
   };
-  EXPECT_THAT(said(6), HasSubstr("every surface is black: no light gets there; a closed room"));
+  EXPECT_THAT(said(6),
+              HasSubstr("every surface is black because no light gets there; a closed room"));
   EXPECT_THAT(said(5), Not(HasSubstr("is black")));
 }
 

@@ -120,7 +120,7 @@ TEST_F(BakeOnDevice, LeavesNoCheckpointAndBuildsOnNone) {
   for (const std::string option : {"--keep", "--resume", "--layers per-light", "--light direct"}) {
     const CommandResult r = bake("refused", option_ + " " + option);
     EXPECT_EQ(r.code, 1) << r.err;
-    EXPECT_THAT(r.err, HasSubstr(option + " works on the processor alone")) << option;
+    EXPECT_THAT(r.err, HasSubstr(option + " runs on the processor only")) << option;
     EXPECT_FALSE(std::filesystem::exists(scratch_.path / "refused"));
   }
 }
@@ -146,7 +146,7 @@ TEST(DeviceOption, WithoutADeviceIsASentence) {
   EXPECT_EQ(none.code, 1) << none.err;
   const CommandResult wrong = luxel(to_nowhere + " --device cuda");
   EXPECT_EQ(wrong.code, 1) << wrong.err;
-  EXPECT_THAT(wrong.err, HasSubstr("--device cuda is not known; give cpu, gpu, gpu:"));
+  EXPECT_THAT(wrong.err, HasSubstr("--device cuda is not known; give cpu, gpu, auto, or gpu:"));
   EXPECT_FALSE(std::filesystem::exists(scratch.path / "out"));
   const CommandResult any =
       luxel(to_nowhere + " --resolution 16 --samples 16 --quiet --device auto", no_driver);

@@ -160,16 +160,16 @@ Options values_of(const Inputs& in) {
 
 /// What a code other than 0 may say.
 const std::vector<std::string> kReasons{
-    "does not use",         // an option of another solver or technique
-    "has no meaning with",  // the same, in luxel factors
-    "leave",                // two options that contradict each other
-    "is for",               // the same
-    "needs",                // an option that goes with another
-    "xcludes",              // "Excludes:" of the help
-    "is not in",            // no such camera
-    "is of another bake",   // parts that were made without it
+    "does not use",             // an option of another solver or technique
+    "has no meaning with",      // the same, in luxel factors
+    "leave",                    // two options that contradict each other
+    "is for",                   // the same
+    "needs",                    // an option that goes with another
+    "xcludes",                  // "Excludes:" of the help
+    "is not in",                // no such camera
+    "belongs to another bake",  // parts that were made without it
     "only the factors of a closed enclosure",
-    "the picture is to end in",
+    "the name of the picture must end in",
 };
 
 bool is_known(const CommandResult& r) {

@@ -72,7 +72,7 @@ TEST(Extremes, PlacesBeyondAreRefused) {
         "render " + box + " --technique cad --eye 1e19,0,0 --look-at 0,0,0 -o " + to}) {
     const CommandResult r = luxel(command);
     EXPECT_EQ(r.code, 1) << command;
-    EXPECT_THAT(r.err, HasSubstr("is no place in a scene: coordinates go up to 1e+09 m"));
+    EXPECT_THAT(r.err, HasSubstr("is too far away: coordinates go up to 1e+09 m"));
   }
 }
 

@@ -179,7 +179,7 @@ TEST(Factors, WrongRequestsAreRefusedAndLeaveNothing) {
     EXPECT_EQ(r.out, "") << arguments;
     EXPECT_EQ(files_in(s.path), (std::set<std::string>{"cube.obj"})) << arguments;
   };
-  refused(cube + " -o " + csv + " --from flor", 1, "there are: floor, ceiling");
+  refused(cube + " -o " + csv + " --from flor", 1, "choose from: floor, ceiling");
   refused(cube + " -o " + csv + " --to nowhere", 1, "'nowhere'");
   refused(cube + " -o " + csv + " --tolerance 0", 1, "--tolerance 0");
   refused(cube + " -o " + csv + " --tolerance nan", 1, "--tolerance nan");

@@ -51,7 +51,7 @@ TEST(HierarchicalBake, RefusesWhatCannotWork) {
        {std::pair{"--eps -1", "--eps -1 is not an error"},
         std::pair{"--min-area -1", "--min-area -1 is not an area"},
         std::pair{"--min-weight -1", "--min-weight -1 is not a weight"},
-        std::pair{"--ranking size", "--ranking size is not known; there is: slope, nearness"},
+        std::pair{"--ranking size", "--ranking size is not known; choose from: slope, nearness"},
         std::pair{"--max-leaf-lines 2000", "--max-leaf-lines 2000 is outside 0 to 1000"},
         std::pair{"--samples 16", "does not use --samples"},
         std::pair{"--patches 16", "does not use --patches"}}) {
@@ -107,9 +107,9 @@ TEST(HierarchicalPictures, SurviveBadPolygonsAndNameThem) {
                                 " --at 3.5,0,3.5 --normal 0,1,0 --eps 0 --min-area 0.05 "
                                 "--background 1,1,1 --solver hierarchical --json");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("faces lie on each other"));
+  EXPECT_THAT(r.err, HasSubstr("faces coincide"));
   EXPECT_THAT(r.err, HasSubstr("'floor' and 'again'"));
-  EXPECT_THAT(r.err, HasSubstr("faces pass through each other"));
+  EXPECT_THAT(r.err, HasSubstr("faces intersect"));
   EXPECT_THAT(r.err, HasSubstr("'through'"));
   const double e = nlohmann::json::parse(r.out)["irradiance"][0];
   EXPECT_GT(e, 0.5 * M_PI);  // most of a white sky
@@ -188,7 +188,7 @@ TEST(Probe, RefusesWhatCannotBe) {
        {std::pair{"--at 1,2", "--at '1,2' is not a point"},
         std::pair{"--at 50,0,0", "no surface within"},
         std::pair{"--at 0,0,0 --normal 0,0,0", "is no direction"},
-        std::pair{"--at 0,0,0 -o x.jpg", "is to end in .png"},
+        std::pair{"--at 0,0,0 -o x.jpg", "must end in .png"},
         std::pair{"--at 0,0,0 -o x.png", "--solver hierarchical"},
         std::pair{"--at 0,0,0 --eps 1", "does not use --eps"},
         std::pair{"--at 0,0,0 --max-error 0", "--max-error 0"},

@@ -96,7 +96,7 @@ TEST(KeptUv, KeepShowsTheLightOfTheOtherSide) {
   const pipeline::Bake b = bake(scene, settings_at(256, atlas::UvMode::keep));
   EXPECT_TRUE(b.atlas.kept);
   EXPECT_FALSE(b.wrong_in_uv1);
-  EXPECT_THAT(about_uv1(b), ElementsAre(HasSubstr("see light on both sides")));
+  EXPECT_THAT(about_uv1(b), ElementsAre(HasSubstr("get light on both sides")));
   EXPECT_LT(light_of(b, scene, kArches, -1).shown_over_true, 0.2);
 }
 

@@ -172,11 +172,11 @@ TEST(Layers, AreRefusedInASentence) {
   const std::string start =
       "bake " + scene_file("cornell-box.glb") + " -o " + (s.path / "x").string() + " --layers ";
   for (const auto& [options, sentence] :
-       {std::pair{"every", "--layers every is not known; there is: per-light, groups"},
+       {std::pair{"every", "--layers every is not known; choose from: per-light, groups"},
         {"groups --solver matrix", "--solver matrix does not use --layers"},
-        {"groups --denoise", "--layers groups does not go together with --denoise"},
-        {"groups --directional sh1", "does not go together with --directional"},
-        {"per-light --probes 1", "does not go together with --probes"}}) {
+        {"groups --denoise", "--layers groups cannot be combined with --denoise"},
+        {"groups --directional sh1", "cannot be combined with --directional"},
+        {"per-light --probes 1", "cannot be combined with --probes"}}) {
     const CommandResult r = luxel(start + options);
     EXPECT_EQ(r.code, 1) << options;
     EXPECT_THAT(r.err, HasSubstr(sentence));

@@ -76,7 +76,7 @@ TEST(Profiles, WhatCannotBeIsSaid) {
   const CommandResult unknown =
       luxel("bake " + kWall + out + " --ies lamp=" + scene_file("ies/spot.ies"));
   EXPECT_EQ(unknown.code, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("there is: 'left', 'middle', 'right'"));
+  EXPECT_THAT(unknown.err, HasSubstr("choose from: 'left', 'middle', 'right'"));
   const CommandResult broken = luxel("bake " + kWall + out + " --ies left=" + kWall);
   EXPECT_EQ(broken.code, 1);
   EXPECT_THAT(broken.err, AllOf(HasSubstr("wall.gltf"), HasSubstr("TILT=")));

@@ -249,8 +249,8 @@ TEST(Lux, RefusesWhatCannotBe) {
   bake(scene, bake_of, "--resolution 16 --samples 4");
   for (const auto& [options, sentence] :
        {std::pair{"", "--plane 0.85: no surface"},
-        {"--plane -1", "--plane -1 is no height"},
-        {"--plane 0.2 --spacing 0", "--spacing 0 is no spacing"},
+        {"--plane -1", "--plane -1 is not a height"},
+        {"--plane 0.2 --spacing 0", "--spacing 0 is not a spacing"},
         {"--plane 0.2 -o plan.txt", "name it .csv"},
         {"--plane 0.2 --floor 7", "--floor 7: no surface"},
         {"--plane 0.2 --boundary 9", "no point of the work plane is left"},
@@ -310,7 +310,7 @@ TEST(Probe, EndsInTime) {
   const CommandResult r = luxel("probe " + scene_file("cornell-box.glb") +
                                 " --at 0.1,0.01,0.4 --max-error 1e-6 --time-budget 0.3");
   EXPECT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.3 was over at a standard error of"));
+  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.3 ran out at a standard error of"));
 }
 
 // The office takes 14 seconds of a core.
@@ -318,7 +318,7 @@ TEST(Probe, SolvesNoSceneForLongerThanItsTime) {
   const CommandResult r = luxel("probe " + scene_file("office.glb") +
                                 " --at 0.3,0,0.2 --solver hierarchical --time-budget 0.2");
   EXPECT_EQ(r.code, 3) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.2 was over in the stage"));
+  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.2 ran out in the stage"));
   EXPECT_THAT(r.err, HasSubstr("give more time or a larger --eps"));
   EXPECT_EQ(r.out, "");
 }

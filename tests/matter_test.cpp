@@ -122,7 +122,7 @@ scene::Scene plate_with_uv1() {
 TEST(Sides, OnePlaceForBothIsSaid) {
   const Baked b = bake(plate_with_uv1(), "--resolution 64 --samples 4 --uv keep");
   EXPECT_EQ(b.scene.meshes[0].triangles.size(), 2u);
-  EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("see light on both sides"));
+  EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("get light on both sides"));
   EXPECT_EQ(b.report["atlas"]["kept_uv1"], true);
   EXPECT_FALSE(b.report["atlas"].contains("wrong_sides_in_uv1"));
 }
@@ -188,7 +188,7 @@ TEST(Sides, TheRelighterHasTexelsOnBoth) {
     for (const Vec3& n : lxr->target.geometric_normal) ++(n.y > 0 ? up_down.first : up_down.second);
     const auto warnings = nlohmann::json::parse(r.out)["warnings"].dump();
     EXPECT_THAT(warnings,
-                HasSubstr(uv == "auto" ? "TEXCOORD_1 is not kept" : "see light on both sides"));
+                HasSubstr(uv == "auto" ? "TEXCOORD_1 is not kept" : "get light on both sides"));
     return up_down;
   };
   const auto both = places("auto"), kept = places("keep");

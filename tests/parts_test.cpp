@@ -118,16 +118,16 @@ TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
   for (const char* text : {"3", "0/4", "5/4", "1/x", "/", "-1/4"})
     EXPECT_THAT(error(bake + " --part " + text), HasSubstr("is no part of a bake"));
   for (const std::string other : {"--keep", "--time-budget 5"})
-    EXPECT_THAT(error(bake + " --part 1/2 " + other), HasSubstr("does not go together with"));
+    EXPECT_THAT(error(bake + " --part 1/2 " + other), HasSubstr("cannot be combined with"));
   EXPECT_THAT(error(bake + " --part 1/2 --solver hemicube"), HasSubstr("does not use --part"));
   EXPECT_THAT(error(bake + " --part 1/2 --plan"), HasSubstr("leave --part out"));
   EXPECT_FALSE(fs::exists(folder_));
   done(1, 2, box + " --samples 4");
   EXPECT_THAT(
       error(bake + " --samples 5 --part 1/2"),
-      HasSubstr("part-1-of-2.luxel is of another bake: samples 4 there, 5 here; remove it"));
+      HasSubstr("part-1-of-2.luxel belongs to another bake: samples 4 there, 5 here; remove it"));
   EXPECT_THAT(error(bake + " --samples 5 --part 2/2"),
-              HasSubstr("part-1-of-2.luxel is of another"));
+              HasSubstr("part-1-of-2.luxel belongs to another"));
   const std::string to = " -o " + (scratch_.path / "x").string();
   EXPECT_THAT(error("merge " + scratch_.path.string() + to), HasSubstr("has no parts of a bake"));
   ASSERT_EQ(shell("mkfifo " + (folder_ / "part-9-of-9.luxel").string()).code, 0);
@@ -135,7 +135,7 @@ TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
   fs::remove(folder_ / "part-9-of-9.luxel");
   EXPECT_THAT(error("merge " + scene_file("office.glb") + to), HasSubstr("is damaged at byte 0"));
   EXPECT_THAT(error("merge " + folder_.string() + to + " --scene " + scene_file("office.glb")),
-              HasSubstr("is of another bake: "));
+              HasSubstr("belongs to another bake: "));
   EXPECT_THAT(error("merge " + folder_.string() + to + " --scene absent.glb"),
               HasSubstr("absent.glb"));
 }

@@ -164,7 +164,8 @@ TEST_F(Playing, RefusesAndLeavesNothing) {
                              "--background 1,1,1", "--sun 0,45,1"}) {
     const CommandResult r = play(lxr(), moves, s.path / "f", option);
     EXPECT_EQ(r.code, 1) << option;
-    EXPECT_THAT(r.err, HasSubstr("is for making a file, not for --play; leave it out")) << option;
+    EXPECT_THAT(r.err, HasSubstr("is for preparing a scene, not for --play; leave it out"))
+        << option;
   }
   EXPECT_THAT(luxel("relight --play " + lxr().string() + " -o " + (s.path / "f").string()).err,
               HasSubstr("--play needs --script"));

@@ -82,7 +82,7 @@ TEST(Numbers, ThatMakeNoSenseAreRefused) {
       {"render " + scene + output("a.png") + " --technique path",
        {{"--seed -1", "--seed: -1"}, {"--threads -1", "--threads: -1"}}},
       {"lux " + scene + " --from baked",
-       {{"--seed -1", "--seed: -1"}, {"--floor nan", "--floor nan is no height", 1}}},
+       {{"--seed -1", "--seed: -1"}, {"--floor nan", "--floor nan is not a height", 1}}},
       {"info " + scene, {{"--threads -1", "--threads: -1"}}},
       {"compare a.png b.png", {{"--threads -1", "--threads: -1"}}},
       {"bench stated", {{"--first-seed -1", "--first-seed: -1"}}}};
@@ -148,7 +148,8 @@ TEST(StackOverflow, IsASentence) {
   const std::string file = s.write("deep.b3d", deep_b3d(100000)).string();
   const CommandResult r = luxel("info " + file + " --json");
   EXPECT_EQ(r.code, 1);
-  EXPECT_THAT(r.err, HasSubstr("luxel: the stack is full; the parts of a file lie in each other"));
+  EXPECT_THAT(r.err,
+              HasSubstr("luxel: the stack is full; the parts of a file are nested too deeply"));
   EXPECT_THAT(r.out, HasSubstr("\"exit_code\": 1"));
 }
 

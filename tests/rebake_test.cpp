@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
              0.5, "light 'left' has another intensity", kRough},
         Case{"GlassMadeOpaque",
              [](scene::Scene& s) { s.materials[kGlass].alpha_mode = scene::AlphaMode::opaque; },
-             0.9, "material 'glass' lets light through otherwise"},
+             0.9, "material 'glass' transmits light differently"},
         Case{"Emission",
              [](scene::Scene& s) {
                s.materials[kShine].emission = {9, 1, 1};
@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
                s.materials[kGlass].base_color = {0.2f, 0.5f, 0.9f};
              },
              0.9,
-             "material 'glass' lets light through otherwise, material 'glass' has another colour"},
+             "material 'glass' transmits light differently, material 'glass' has another colour"},
         Case{"Everything",
              [](scene::Scene& s) {
                move(s, kBlock, {0.5f, 0, 0.25f});
@@ -316,7 +316,8 @@ TEST_F(Rebake, DoubleSidedGlassMadeOpaqueIsBakedFromScratch) {
     two_sided(s);
     s.materials[kGlass].alpha_mode = scene::AlphaMode::opaque;
   };
-  EXPECT_THAT(bake(edit, kept_, "--keep")["cache"]["note"], HasSubstr("which is double-sided"));
+  EXPECT_THAT(bake(edit, kept_, "--keep")["cache"]["note"],
+              HasSubstr("double-sided material 'glass'"));
   bake(edit, scratch_.path / "scratch", "");
   EXPECT_EQ(slurp(kept_ / "lightmap.exr"), slurp(scratch_.path / "scratch/lightmap.exr"));
 }
@@ -362,7 +363,7 @@ TEST_F(Rebake, DamageIsSeen) {
 TEST_F(Rebake, WhatDoesNotGoTogetherIsRefused) {
   const std::string box = scene_file("cornell-box.glb") + " -o " + (scratch_.path / "b").string();
   for (const auto& [options, why] : {std::pair("--keep --resume", "has no checkpoint"),
-                                     {"--keep --time-budget 5", "should not depend on the clock"},
+                                     {"--keep --time-budget 5", "must not depend on the clock"},
                                      {"--keep --solver reference", "--keep"}}) {
     const CommandResult r = luxel("bake " + box + " " + options);
     EXPECT_NE(r.code, 0) << options;

@@ -97,7 +97,7 @@ TEST(RelightCommand, LightOfAScriptThatOverflowsIsASentence) {
       {"position": [0.27, 0.27, 0.27], "intensity": [1e30, 1e30, 1e30]}]})");
   const CommandResult r = play(s.path / "a.lxr", script, s.path / "frames");
   EXPECT_EQ(r.code, 1);
-  EXPECT_THAT(r.err, HasSubstr("is above 1e+18, which is too bright to be held; most of it can "
+  EXPECT_THAT(r.err, HasSubstr("is above 1e+18, too bright to store; most of it can "
                                "come from light 0, whose intensity of 1e+30"));
   EXPECT_FALSE(std::filesystem::exists(s.path / "frames"));
 }
@@ -122,9 +122,9 @@ TEST(RelightCommand, SheetsHaveTwoSidesInAFileWithoutLight) {
 TEST(RelightCommand, RefusesWhatCannotBeMade) {
   const ScratchFolder s;
   for (const auto& [options, sentence] :
-       {std::pair{"--codec zip", "--codec zip is not known; there is: hierarchical, "},
+       {std::pair{"--codec zip", "--codec zip is not known; choose from: hierarchical, "},
         std::pair{"--codec bc1 --patches 30000", "--patches 30000 are too many for --codec bc1"},
-        std::pair{"--target faces", "--target faces is not known; there is: texels, "},
+        std::pair{"--target faces", "--target faces is not known; choose from: texels, "},
         std::pair{"--max-error 2", "--max-error 2 is outside 0.00001 to 1"},
         std::pair{"--max-error 0", "--max-error 0 is outside"},
         std::pair{"--bounces 2000", "--bounces 2000 is outside 0 to 1000"},
@@ -132,7 +132,7 @@ TEST(RelightCommand, RefusesWhatCannotBeMade) {
         std::pair{"--rays 0", "--rays 0 is outside 1 to"},
         std::pair{"--resolution 0", "--resolution 0 is outside"},
         std::pair{"--texels-per-metre -1", "--texels-per-metre -1 is not a density"},
-        std::pair{"--max-memory 1M", "1 MiB may be used; ask for fewer"},
+        std::pair{"--max-memory 1M", "1 MiB may be used; lower"},
         std::pair{"--script moves.json", "--script is for --play FILE.lxr"}}) {
     const CommandResult r =
         luxel("relight " + kBox + " " + options + " -o " + (s.path / "a.lxr").string());
@@ -142,7 +142,7 @@ TEST(RelightCommand, RefusesWhatCannotBeMade) {
   }
   const std::string here = (s.path / "a").string();
   EXPECT_THAT(luxel("relight " + kBox + " -o " + here + ".txt").err,
-              HasSubstr("a.txt: the file is to end in .lxr"));
+              HasSubstr("a.txt: the name of the file must end in .lxr"));
   EXPECT_THAT(luxel("relight -o " + here + ".lxr").err, HasSubstr("give a SCENE"));
   EXPECT_THAT(luxel("relight nothing.glb -o " + here + ".lxr").err, HasSubstr("no such file"));
   EXPECT_EQ(luxel("relight " + kBox).code, 2);  // no -o

@@ -210,7 +210,7 @@ TEST(Techniques, ABakeIsDrawnUnderItsOwnSky) {
   std::filesystem::remove(map);
   const CommandResult gone = away("");
   EXPECT_EQ(gone.code, 0);
-  EXPECT_THAT(gone.err, HasSubstr("sky.exr of the bake is not there any more"));
+  EXPECT_THAT(gone.err, HasSubstr("sky.exr of the bake no longer exists"));
 }
 
 TEST(RenderRefuses, WhatATechniqueWouldNotLookAt) {

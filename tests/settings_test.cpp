@@ -54,13 +54,13 @@ TEST(GivenSettings, GiveWayToOptions) {
 TEST(GivenSettings, ThatMeanNothingAreRefused) {
   const ScratchFolder s;
   for (const auto& [text, says] :
-       {std::pair{"no json", "is no JSON"}, std::pair{"[1]", "there are no settings in it"},
+       {std::pair{"no json", "is not JSON"}, std::pair{"[1]", "it has no settings"},
         std::pair{R"({"sampels": 4})", "there is no setting 'sampels'"},
         std::pair{R"({"matrix": {"elements": "vertex"}})", "'matrix.elements'"},
         std::pair{R"({"samples": 0})", "--samples 0 is outside 1 to"},
         std::pair{R"({"samples": {}})", "--samples"}, std::pair{R"({"stitch": 1})", "stitch"},
         std::pair{R"({"uv": "none"})", "--uv none is not known"},
-        std::pair{R"({"solver": 3})", "another type"},
+        std::pair{R"({"solver": 3})", "the wrong type"},
         std::pair{R"({"formats": "exr,jpg"})", "jpg"}}) {
     const auto file = s.write("s.json", text);
     const CommandResult r =

@@ -148,15 +148,15 @@ TEST_F(BakesOfATeam, AreRefusedWithOneSentence) {
     return r.err;
   };
   for (const std::string other : {"--keep", "--part 1/2"})
-    EXPECT_THAT(error(together(2, box + " " + other)), HasSubstr(other + " is for one process"));
+    EXPECT_THAT(error(together(2, box + " " + other)),
+                HasSubstr(other + " needs a single process"));
   EXPECT_THAT(error(together(2, scene_file("cornell-box.glb") + " --solver hierarchical")),
-              HasSubstr("--solver hierarchical works in one process"));
+              HasSubstr("--solver hierarchical needs a single process"));
   const std::string per_node = " --processes-per-node 2";
   EXPECT_THAT(
       error(shell(mpirun(1) + " " LUXEL_BINARY " " + bake(box) + per_node + " : -n 1 " +
                   LUXEL_BINARY " " + bake(box) + " --bounces 2" + per_node)),
-      HasSubstr(
-          "process 1 (there) was not given the settings of process 0 (here): bounces 2 there"));
+      HasSubstr("process 1 (there) has other settings than process 0 (here): bounces 2 there"));
   // A file that one node lacks.
   fs::create_directory(scratch_.path / "there"), fs::create_directory(scratch_.path / "not");
   fs::copy_file(scene_file("cornell-box.glb"), scratch_.path / "there" / "box.glb");

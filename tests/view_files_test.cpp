@@ -89,7 +89,7 @@ TEST_F(ViewFiles, ShowPartsOfTheLight) {
             1e-3);
   const CommandResult more =
       run(a + play(R"({"at": 0, "bounces": 1})") + " --offscreen --screenshot x.png");
-  EXPECT_THAT(more.err, HasSubstr("light of 1 reflections is not told apart; it is up to 0"));
+  EXPECT_THAT(more.err, HasSubstr("light of 1 bounces is not known separately, only up to 0"));
 }
 
 TEST_F(ViewFiles, ShowProbes) {

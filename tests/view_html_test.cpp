@@ -167,7 +167,7 @@ class ViewHtml : public ::testing::Test {
             const std::string& options) {
     const CommandResult r =
         luxel("bake " + scene + " -o " + folder.string() + " --html " + options);
-    if (r.code != 0 && r.err.find("--html is not in this luxel") != std::string::npos) {
+    if (r.code != 0 && r.err.find("this luxel has no --html") != std::string::npos) {
       [&] { GTEST_SKIP() << r.err; }();
       return false;
     }

@@ -166,11 +166,10 @@ TEST(ViewInside, SaysWhatIsWrong) {
     EXPECT_EQ(r.code, 1);
     return r.err;
   };
-  EXPECT_THAT(
-      error(kInsideBox + " --inside gather"),
-      HasSubstr("--inside 'gather' cannot be looked into; there are: hierarchical, hemicube"));
+  EXPECT_THAT(error(kInsideBox + " --inside gather"),
+              HasSubstr("--inside gather is not known; choose from: hierarchical, hemicube"));
   EXPECT_THAT(error(s.path.string() + " --inside hierarchical"),
-              HasSubstr("--inside is for a scene"));
+              HasSubstr("--inside needs the file of a scene"));
   EXPECT_THAT(error(kInsideBox + " --inside hierarchical --solver gather"),
               HasSubstr("--solver gather contradicts --inside hierarchical"));
   EXPECT_THAT(error(kInsideBox + " --inside hierarchical --bounces 2"), HasSubstr("--bounces"));
@@ -189,7 +188,7 @@ TEST(ViewInside, SaysWhatIsWrong) {
                     play(R"({"at": 0, "use": "element", "pixel": [1, 2]})")),
               HasSubstr("--inside opens one"));
   EXPECT_THAT(error((s.path / "none.glb").string() + " --inside hierarchical"),
-              HasSubstr("none.glb is no such file"));
+              HasSubstr("none.glb is not one"));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST_F(ViewRelight, PreparesTheFileOfRelightOnce) {
   ASSERT_EQ(drawn(at("box.lxr"), "box.png").code, 0);
   EXPECT_TRUE(slurp(at("prepared.png")) == slurp(at("box.png")));
 
-  EXPECT_THAT(drawn(relit(), "again.png").err, HasSubstr("which was prepared before"));
+  EXPECT_THAT(drawn(relit(), "again.png").err, HasSubstr("which was prepared earlier"));
   EXPECT_TRUE(slurp(at("again.png")) == slurp(at("box.png")));
   EXPECT_THAT(drawn(relit("--codec dense16"), "other.png").err, HasSubstr("prepared " + at("out")));
 }
@@ -83,8 +83,9 @@ TEST_F(ViewRelight, SaysWhatIsWrong) {
     return r.err;
   };
   s_.write("box.lxr", "not looked at");
-  EXPECT_THAT(error(at("box.lxr") + " --relight"), HasSubstr("is prepared already"));
-  EXPECT_THAT(error(s_.path.string() + " --relight"), HasSubstr("--relight is for a scene"));
+  EXPECT_THAT(error(at("box.lxr") + " --relight"), HasSubstr("is already prepared"));
+  EXPECT_THAT(error(s_.path.string() + " --relight"),
+              HasSubstr("--relight needs the file of a scene"));
   EXPECT_THAT(error(kBox + " --relight --inside hemicube"), HasSubstr("leave --inside out"));
   EXPECT_THAT(error(kBox + " --codec bc1"), HasSubstr("--codec is for --relight"));
   EXPECT_THAT(error(relit("--codec zip")), HasSubstr("--codec zip is not known"));

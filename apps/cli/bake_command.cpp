@@ -25,13 +25,12 @@ struct BakeOptions {
 void print_part(const nlohmann::json& part) {
   const int number = part["number"].get<int>(), of = part["of"].get<int>();
   const auto file = part["file"].get<std::string>();
-  std::fprintf(
-      stderr, "%s\n",
-      fmt::format("part {} of {}: {} pieces of work were added to {}; the next stages need {} of "
-                  "other parts; luxel merge ends the bake",
-                  number, of, part["parts_kept"].get<uint64_t>(), file,
-                  part["parts_left"].get<uint64_t>())
-          .c_str());
+  std::fprintf(stderr, "%s\n",
+               fmt::format("part {} of {}: added {} pieces of work to {}; the next stages need {} "
+                           "pieces from other parts; luxel merge finishes the bake",
+                           number, of, part["parts_kept"].get<uint64_t>(), file,
+                           part["parts_left"].get<uint64_t>())
+                   .c_str());
 }
 
 void print_plan(const nlohmann::json& json) {
@@ -52,7 +51,7 @@ void print_plan(const nlohmann::json& json) {
 
 int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings) {
   if (!settings.part.is_all())
-    return report({ErrorCode::bad_setting, "--plan is for a whole bake; leave --part out"},
+    return report({ErrorCode::bad_setting, "--plan estimates a whole bake; leave --part out"},
                   options.common);
   const auto work = [&](Progress& progress) -> Result<nlohmann::json> {
     LUXEL_TRY(const pipeline::Plan plan, pipeline::plan_bake(settings, progress));
@@ -83,18 +82,16 @@ void register_bake(CLI::App& app, Action& action) {
   CLI::App* bake = app.add_subcommand("bake", "Bake a scene's light into lightmaps");
   auto options = std::make_shared<BakeOptions>();
   auto* scene = bake->add_option("SCENE", options->choice.scene, "glTF, OBJ, FBX, ... file");
-  bake->add_option("-o,--output", options->choice.output,
-                   "Folder for the results; made when missing")
+  bake->add_option("-o,--output", options->choice.output, "Output folder; created if missing")
       ->required();
   auto* settings = add_bake_settings(*bake, options->choice);
   auto* plan =
       bake->add_flag("--plan", options->choice.plan,
-                     "Do not bake: estimate time, memory and rays from a short trial (for " +
+                     "Estimate time, memory and rays from a short trial, and bake nothing (for " +
                          pipeline::solvers_with("--plan") + ")");
   add_device(*bake, options->device,
-             "What works out gather's direct light, traces its rays, and adds up what "
-             "rays bring; with --solver hemicube, what looks through hemicubes; with --solver "
-             "reference, what follows paths")
+             "Where to compute direct light, rays and bounces (gather), hemicubes (hemicube) or "
+             "paths (reference)")
       ->excludes(plan);
   add_bake_table(*bake, options->choice.given);
   add_processes_per_node(*bake, options->processes_per_node);

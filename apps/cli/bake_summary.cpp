@@ -12,7 +12,7 @@ std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::j
   const double rms = json["relative_error"].get<double>();
   if (rms <= 0) return {};
   const std::string text = fmt::format("estimated error{}: RMS {:.3g} % of the mean light",
-                                       settings.denoise ? " before the denoiser" : "", 100 * rms);
+                                       settings.denoise ? " before denoising" : "", 100 * rms);
   if (!json.contains("error")) return text;
   const auto& error = json["error"];
   const auto& worst = error["worst"];

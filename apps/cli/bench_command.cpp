@@ -232,33 +232,31 @@ void register_bench(CLI::App& app, Action& action) {
   bench
       ->add_option(
           "NAME", options->name,
-          "Which table; all of them; or a page: validation holds luxel against exact answers "
-          "and a path tracer (a quarter of an hour), gallery shows bakes without options "
-          "(most of an hour), stated prints stated errors against true ones; growth bakes maps "
-          "and scenes that grow (an hour, 20 GB of memory, 45 GB of the disk)")
+          "Table to print, or all; or a page: validation compares luxel with exact solutions and a "
+          "path tracer (15 minutes), gallery shows bakes with default options (almost an hour), "
+          "stated compares stated errors with true ones, growth bakes ever larger lightmaps and "
+          "scenes (an hour, 20 GB of memory, 45 GB of disk)")
       ->check(CLI::IsMember(names))
       ->required();
-  bench->add_option(
-      "--scene", options->scene,
-      "gallery: this scene alone, by its file's stem; the rest of the page stays. "
-      "relight: only the comparison with the path tracer in this scene, without files. "
-      "budget, rms: only the rows of this scene, by its file's stem. "
-      "growth: only one of the series texels, triangles, copies and large");
+  bench->add_option("--scene", options->scene,
+                    "gallery: redo only the scene with this file stem and keep the rest of the "
+                    "page. relight: only compare with the path tracer in this scene; write no "
+                    "files. budget, rms: only the rows of the scene with this file stem. growth: "
+                    "only this series: texels, triangles, copies or large");
   bench
       ->add_option("--first-seed", options->stated.first_seed,
-                   "stated: the first of the hundred scenes' seeds (default: 1)")
+                   "stated: seed of the first of the hundred scenes (default: 1)")
       ->check(whole_number());
   bench
       ->add_option("--only", options->stated.only,
-                   "stated: the rows of one solver or command alone")
+                   "stated: only the rows of this solver or command")
       ->check(CLI::IsMember(bench::stated_error_names()));
-  bench->add_option("--shared", options->shared,
-                    "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
   bench->add_option(
-      "-o,--output", options->output,
-      "validation, gallery, hemicube, relight, hierarchical: folder in which bench/ or guide/ gets "
-      "the page or the .csv, and images/ the pictures "
-      "(default: docs)");
+      "--shared", options->shared,
+      "Folder that holds scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
+  bench->add_option("-o,--output", options->output,
+                    "validation, gallery, hemicube, relight, hierarchical: write the page or .csv "
+                    "to bench/ or guide/ in this folder, and pictures to images/ (default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

@@ -21,8 +21,8 @@ void add_option_file(CLI::App& command, Common& common) {
   };
   command
       .add_option("--settings", common.settings,
-                  fmt::format("Take options from this file instead of {} beside the scene; none: "
-                              "no file; options given beside it win",
+                  fmt::format("Read options from this file instead of {} beside the scene; none: "
+                              "read no file; the command line overrides the file",
                               kOptionFileName))
       ->check(CLI::Validator(check, ""))
       ->type_name("FILE.toml|none");
@@ -32,17 +32,17 @@ void add_option_file(CLI::App& command, Common& common) {
 
 void add_common(CLI::App& command, Common& common) {
   if (!command.get_option_no_throw("--threads"))
-    command.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
+    command.add_option("--threads", common.threads, "Number of threads; 0: all cores")
         ->check(whole_number(kMostThreads))
         ->capture_default_str();
   if (command.get_option_no_throw("SCENE") && !command.get_option_no_throw("--settings"))
     add_option_file(command, common);
-  command.add_flag("--quiet", common.quiet, "No progress, no warnings");
-  command.add_flag("--json", common.json, "One JSON object on stdout, everything else on stderr");
+  command.add_flag("--quiet", common.quiet, "Print no progress and no warnings");
+  command.add_flag("--json", common.json,
+                   "Print one JSON object to stdout, and everything else to stderr");
   command.add_flag_callback(
       "--progress-json", [&common] { common.progress_json = common.quiet = true; },
-      "Print progress, warnings and errors on stderr as JSON, one object per line, and nothing "
-      "else");
+      "Print only progress, warnings and errors to stderr, as JSON with one object per line");
 }
 
 CLI::Validator whole_number(uint64_t most) {
@@ -63,7 +63,7 @@ Result<Vec3> parse_point(const char* option, const std::string& text) {
     return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option,
                 text);
   if (scene::is_held(p)) return p;
-  return fail(ErrorCode::bad_setting, "{} '{}' is no place in a scene: coordinates go up to {:g} m",
+  return fail(ErrorCode::bad_setting, "{} '{}' is too far away: coordinates go up to {:g} m",
               option, text, scene::kFarthest_m);
 }
 

@@ -98,23 +98,23 @@ int run_compare(const CompareOptions& options) {
 }  // namespace
 
 void register_compare(CLI::App& app, Action& action) {
-  CLI::App* compare =
-      app.add_subcommand("compare", "Hold two pictures or two bakes against each other");
+  CLI::App* compare = app.add_subcommand("compare", "Compare two pictures or two bakes");
   auto options = std::make_shared<CompareOptions>();
   pipeline::CompareSettings& s = options->settings;
-  compare->add_option("IMAGE_A", s.a, "An EXR, HDR, PNG or JPEG file, or a folder of a bake")
+  compare
+      ->add_option("IMAGE_A", s.a, "An EXR, HDR, PNG or JPEG file, or the output folder of a bake")
       ->required();
   compare->add_option("IMAGE_B", s.b, "The reference, of the same kind")->required();
-  compare->add_option("--report", s.report, "Folder in which to write report.html")
-      ->type_name("DIR");
+  compare->add_option("--report", s.report, "Write report.html to this folder")->type_name("DIR");
   options->most.resize(pipeline::limited_measures().size());
   for (size_t k = 0; k < options->most.size(); ++k) {
     const pipeline::Limited& m = pipeline::limited_measures()[k];
     compare->add_option(std::string(m.flag), options->most[k],
-                        fmt::format("End with code 1 when the {} is larger", m.name));
+                        fmt::format("Exit with code 1 if the {} is larger", m.name));
   }
-  compare->add_option("--exposure", s.exposure,
-                      "Factor before tone mapping, for light; default: chosen from B");
+  compare->add_option(
+      "--exposure", s.exposure,
+      "Exposure factor before tone mapping, for pictures of light (default: from B)");
   add_common(*compare, options->common);
   compare->callback([options, &action] { action = [options] { return run_compare(*options); }; });
 }

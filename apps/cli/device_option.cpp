@@ -14,7 +14,7 @@ Result<std::unique_ptr<OpenDevice>> open_device(const std::string& text, const C
   LUXEL_TRY(const gpu::DeviceChoice choice, gpu::parse_device(text));
   LUXEL_TRY(gpu::ChosenDevice chosen, gpu::open_chosen(choice));
   if (!chosen.why_none.empty())
-    print_warnings({"done by the processor: " + chosen.why_none}, common);
+    print_warnings({"computed on the processor: " + chosen.why_none}, common);
   if (!chosen.device) return nullptr;
   auto out = std::make_unique<OpenDevice>();
   out->device = std::move(chosen.device);
@@ -33,9 +33,9 @@ CLI::Option* add_device(CLI::App& app, std::string& text, const std::string& doe
   return app
       .add_option("--device", text,
                   does +
-                      ": cpu; gpu, a graphics card; gpu:N or gpu:TEXT, the device of that number "
-                      "or with that text in its name (luxel info --devices); auto, a graphics card "
-                      "where there is one that can")
+                      ": cpu; gpu: a graphics card; gpu:N or gpu:TEXT: the device with this number "
+                      "or with this text in its name (luxel info --devices); auto: a graphics card "
+                      "if one can do it, else cpu")
       ->type_name("cpu|gpu|gpu:NAME|auto")
       ->capture_default_str();
 }

@@ -52,18 +52,18 @@ Finding look_at_processor() {
   const std::string text =
       fmt::format("{}, {} threads; Embree {}", processor(), thread_count(), embree.number);
   if (embree.rays_in_a_packet == 0)
-    return {State::bad, "processor", text, "Embree does not run on it"};
+    return {State::bad, "processor", text, "Embree does not support this processor"};
   const std::string packets = fmt::format("{}, {} rays at a time", text, embree.rays_in_a_packet);
   if (embree.rays_in_a_packet >= 8) return {State::good, "processor", packets, ""};
-  return {State::lacking, "processor", packets, "a newer processor traces more"};
+  return {State::lacking, "processor", packets, "newer processors trace more at a time"};
 }
 
 Finding look_at_memory() {
   constexpr uint64_t kLittle = 1'000'000'000;
   const uint64_t free = available_bytes();
-  const std::string text = fmt::format("{:.1f} GB are free", gigabytes(free));
+  const std::string text = fmt::format("{:.1f} GB free", gigabytes(free));
   if (free >= kLittle) return {State::good, "memory", text, ""};
-  return {State::lacking, "memory", text, "keep --resolution small, or set --max-memory"};
+  return {State::lacking, "memory", text, "keep --resolution low, or set --max-memory"};
 }
 
 /// The folder in which most people leave results.
@@ -73,17 +73,18 @@ Finding look_at_disk() {
   const fs::path here = fs::current_path(failed);
   const fs::space_info space = failed ? fs::space_info{} : fs::space(here, failed);
   if (failed)
-    return {State::lacking, "disk", "the free space of this folder is not known",
-            "work in another one"};
+    return {State::lacking, "disk", "cannot tell how much space this folder has left",
+            "work in another folder"};
   const std::string text =
-      fmt::format("{:.1f} GB are free in {}", gigabytes(space.available), here.string());
+      fmt::format("{:.1f} GB free in {}", gigabytes(space.available), here.string());
   if (space.available >= kLittle) return {State::good, "disk", text, ""};
-  return {State::lacking, "disk", text, "give an --output on another disk"};
+  return {State::lacking, "disk", text, "choose an --output on another disk"};
 }
 
 Finding look_at_devices() {
   constexpr const char* kAbout = "graphics device";
-  constexpr const char* kInstall = "install its driver; on Debian, mesa-vulkan-drivers has most";
+  constexpr const char* kInstall =
+      "install its Vulkan driver; on Debian, mesa-vulkan-drivers has most of them";
   const auto devices = gpu::list_devices();
   if (!devices) return {State::lacking, kAbout, "none: " + devices.error().message, kInstall};
   std::string unusable;
@@ -103,14 +104,14 @@ Finding look_at_window() {
   if (is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"))
     return {State::good, "window", "luxel-view can open one", ""};
   return {State::lacking, "window", "neither DISPLAY nor WAYLAND_DISPLAY is set",
-          "luxel-view draws files with --offscreen; under ssh, try ssh -X"};
+          "luxel-view --offscreen draws to a file without a window; over ssh, try ssh -X"};
 }
 
 Finding look_at_cluster() {
   const std::string mpi = cluster::mpi_version();
   if (!mpi.empty()) return {State::good, "cluster", mpi, ""};
   return {State::lacking, "cluster", "built without MPI",
-          "install libopenmpi-dev and openmpi-bin, and build again, to bake on several machines"};
+          "to bake on several machines, install libopenmpi-dev and openmpi-bin, and rebuild"};
 }
 
 Finding look_at_denoiser() {
@@ -134,7 +135,7 @@ Finding bake_a_furnace() {
   const double expected = double(kPi) / double(1 - kReflectance);
   const double share = sum / double(bake->light.irradiance.size()) / expected;
   const std::string text =
-      fmt::format("a closed furnace has {:.2f} % of the light that it must have", 100 * share);
+      fmt::format("a closed furnace gets {:.2f} % of its exact light", 100 * share);
   if (std::abs(share - 1) < double(kMostOff)) return {State::good, kAbout, text, ""};
   return {State::bad, kAbout, text, "please report this"};
 }
@@ -177,7 +178,7 @@ int run_doctor(const Common& common) {
 
 void register_doctor(CLI::App& app, Action& action) {
   CLI::App* doctor = app.add_subcommand(
-      "doctor", "Say what this machine has for luxel and what it lacks, and try a small bake");
+      "doctor", "Check what this machine offers luxel and what it lacks, and try a small bake");
   auto common = std::make_shared<Common>();
   add_common(*doctor, *common);
   doctor->callback([common, &action] { action = [common] { return run_doctor(*common); }; });

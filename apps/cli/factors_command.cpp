@@ -105,30 +105,33 @@ int run_factors(const FactorOptions& options, Team* team) {
 }  // namespace
 
 void register_factors(CLI::App& app, Action& action) {
-  CLI::App* factors = app.add_subcommand("factors", "View factors between a scene's surfaces");
+  CLI::App* factors =
+      app.add_subcommand("factors", "Compute the view factors between the surfaces of a scene");
   auto options = std::make_shared<FactorOptions>();
   pipeline::FactorSettings& s = options->settings;
   factors->add_option("SCENE", s.scene, "The scene; each mesh instance or OBJ group is a surface")
       ->required();
-  factors->add_option("-o,--output", s.output, "Table to write: .csv")->required();
-  factors->add_option("--method", s.method, "analytic, hemicube or rays")
+  factors->add_option("-o,--output", s.output, "Table to write, .csv")->required();
+  factors->add_option("--method", s.method, "How to compute them: analytic, hemicube or rays")
       ->check(CLI::IsMember({"analytic", "hemicube", "rays"}))
       ->capture_default_str();
+  factors->add_option("--tolerance", s.tolerance,
+                      "analytic: error limit where something stands between two surfaces, relative "
+                      "to the factor, or to 1e-3 if the factor is smaller (default: 1e-4)");
   factors->add_option(
-      "--tolerance", s.tolerance,
-      "analytic: relative error where something stands between (1e-4); of factors below "
-      "1e-3, the error of one of 1e-3");
-  factors->add_option("--samples", s.samples,
-                      "rays: rays per surface (262144); hemicube: points per surface (256)");
-  factors->add_option("--hemicube", s.hemicube, "hemicube: pixels along an edge of its top (64)");
+      "--samples", s.samples,
+      "rays: rays per surface (default: 262144); hemicube: points per surface (default: 256)");
+  factors->add_option("--hemicube", s.hemicube,
+                      "hemicube: pixels along an edge of its top (default: 64)");
   factors->add_flag(
       "--smooth", s.smooth,
-      "Correct the factors of a closed enclosure: rows sum to 1, A_i F_ij = A_j F_ji");
-  factors->add_option("--from", s.from, "Only from this surface")->type_name("NAME");
-  factors->add_option("--to", s.to, "Only to this surface")->type_name("NAME");
-  factors->add_option("--max-memory", options->max_memory,
-                      "Memory for the whole process: bytes, 900M, 1.5G (what is free)");
-  factors->add_option("--seed", s.seed, "Another seed, another noise")
+      "Correct the factors of a closed enclosure so that rows sum to 1 and A_i F_ij = A_j F_ji");
+  factors->add_option("--from", s.from, "Only factors from this surface")->type_name("NAME");
+  factors->add_option("--to", s.to, "Only factors to this surface")->type_name("NAME");
+  factors->add_option(
+      "--max-memory", options->max_memory,
+      "Memory limit for the whole process, e.g. 900M or 1.5G (default: the free memory)");
+  factors->add_option("--seed", s.seed, "Random seed")
       ->check(whole_number())
       ->capture_default_str();
   add_import(*factors, options->reading);

@@ -70,12 +70,9 @@ int run_devices(const InfoOptions& options) {
   }
   for (size_t i = 0; i < devices->size(); ++i) {
     const gpu::DeviceInfo& d = (*devices)[i];
-    const std::string use = d.lacks.empty()
-                                ? fmt::format(
-                                      "; luxel bake --device gpu:{} traces rays on it, luxel-view "
-                                      "draws on it",
-                                      i)
-                                : "; luxel cannot use it, for it lacks " + d.lacks;
+    const std::string use =
+        d.lacks.empty() ? fmt::format("; luxel bake --device gpu:{} and luxel-view can use it", i)
+                        : "; luxel cannot use it: it lacks " + d.lacks;
     std::printf("%s: %s%s%s\n", d.name.c_str(), kind_of(d.type),
                 d.has_ray_queries ? ", with ray queries" : "", use.c_str());
   }
@@ -103,11 +100,11 @@ int run_info(const InfoOptions& options) {
 }  // namespace
 
 void register_info(CLI::App& app, Action& action) {
-  CLI::App* info = app.add_subcommand("info", "Say what is in a scene, or which devices there are");
+  CLI::App* info = app.add_subcommand("info", "Describe a scene, or list the graphics devices");
   auto options = std::make_shared<InfoOptions>();
   CLI::Option* scene = info->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file");
   info->add_flag("--devices", options->devices,
-                 "List the graphics devices of this machine, and what luxel can do on them")
+                 "List the graphics devices of this machine and whether luxel can use them")
       ->excludes(scene);
   add_import(*info, options->reading);
   add_common(*info, options->common);

@@ -82,10 +82,10 @@ void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::
 }
 
 void print(const pipeline::LuxSettings& s, const pipeline::LuxReport& report) {
-  std::printf("in %s: %s\n", report.unit.symbol.c_str(), report.unit.reason.c_str());
+  std::printf("unit: %s; %s\n", report.unit.symbol.c_str(), report.unit.reason.c_str());
   for (size_t f = 0; f < report.floors.size(); ++f) print_floor(f + 1, s, report.floors[f]);
   std::printf(
-      "\nU0: minimum / mean; error: one standard error of the mean, by the rays of this command\n");
+      "\nU0: minimum / mean; error: standard error of the mean due to this command's rays\n");
 }
 
 int run_lux(const LuxOptions& options) {
@@ -118,34 +118,32 @@ int run_lux(const LuxOptions& options) {
 }  // namespace
 
 void register_lux(CLI::App& app, Action& action) {
-  CLI::App* lux =
-      app.add_subcommand("lux", "Illuminance on work planes above the floors of a baked scene");
+  CLI::App* lux = app.add_subcommand(
+      "lux", "Compute illuminance on work planes above the floors of a baked scene");
   auto options = std::make_shared<LuxOptions>();
   pipeline::LuxSettings& s = options->settings;
   lux->add_option("SCENE", s.scene, "The scene that was baked")->required();
-  lux->add_option("--from", s.from, "Folder that `luxel bake` left, with the light that it had")
-      ->required();
+  lux->add_option("--from", s.from, "Output folder of the bake; its light is used")->required();
   lux->add_option("-o,--output", s.outputs,
-                  "A .csv with x, y, z, E, standard error, floor and room of each point, or a .png "
-                  "with plans; may be given for both")
+                  "File to write: .csv with x, y, z, E, standard error, floor and room of each "
+                  "point, or .png with floor plans; repeatable")
       ->allow_extra_args(false);
   lux->add_option("--plane", s.plane.plane_m, "Height of the points above each floor")
       ->type_name("METRES")
       ->capture_default_str();
-  options->spacing = lux->add_option("--spacing", options->spacing_m,
-                                     "Distance between points, at most (what EN 12464-1 asks for)")
-                         ->type_name("METRES");
-  lux->add_option("--boundary", s.plane.boundary_m, "Leave out points nearer to a wall")
+  options->spacing =
+      lux->add_option("--spacing", options->spacing_m,
+                      "Largest distance between points (default: as EN 12464-1 requires)")
+          ->type_name("METRES");
+  lux->add_option("--boundary", s.plane.boundary_m, "Leave out points closer to a wall than this")
       ->type_name("METRES")
       ->capture_default_str();
   lux->add_option("--floor", s.plane.floors,
-                  "The height Y of a floor that is meant; may be given for several (those found)")
+                  "Height Y of a floor to use; repeatable (default: all floors found)")
       ->type_name("Y")
       ->allow_extra_args(false);
   lux->add_option("--samples", s.samples, "Rays per point")->capture_default_str();
-  lux->add_option("--seed", s.seed, "Seed of all random numbers")
-      ->check(whole_number())
-      ->capture_default_str();
+  lux->add_option("--seed", s.seed, "Random seed")->check(whole_number())->capture_default_str();
   add_import(*lux, options->reading);
   add_outside_light(*lux, options->outside);
   add_common(*lux, options->common);

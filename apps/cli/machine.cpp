@@ -16,7 +16,7 @@ const char* kind_of(VkPhysicalDeviceType type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
       return "graphics card";
     case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return "graphics of the processor";
+      return "integrated graphics";
     case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
       return "virtual graphics card";
     case VK_PHYSICAL_DEVICE_TYPE_CPU:
@@ -51,7 +51,7 @@ std::string version_text() {
   if (!devices) return out + "\ndevice: none; " + devices.error().message;
   for (const gpu::DeviceInfo& d : *devices)
     out += fmt::format("\ndevice: {}, {}{}", d.name, kind_of(d.type),
-                       d.lacks.empty() ? "" : "; luxel cannot use it, for it lacks " + d.lacks);
+                       d.lacks.empty() ? "" : "; luxel cannot use it: it lacks " + d.lacks);
   return out;
 }
 

@@ -34,7 +34,7 @@ std::string usage_message(const CLI::App& app, const CLI::Error& error,
   std::string text = luxel::arguments::about_unknown_option(command, name, arguments);
   if (text.empty()) text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return fmt::format("{}{} '{} --help' lists what there is", text, text.ends_with('?') ? "" : ";",
+  return fmt::format("{}{} '{} --help' lists the options", text, text.ends_with('?') ? "" : ";",
                      name);
 }
 
@@ -46,8 +46,8 @@ std::string about_unknown_command(const CLI::App& app, const Arguments& argument
     names.push_back(command->get_name());
   if (std::ranges::find(names, arguments[0]) != names.end()) return {};
   const std::string meant = luxel::arguments::did_you_mean(arguments[0], names);
-  return fmt::format("there is no command '{}'{}{} 'luxel --help' lists what there is",
-                     arguments[0], meant, meant.empty() ? ";" : "");
+  return fmt::format("there is no command '{}'{}{} 'luxel --help' lists the commands", arguments[0],
+                     meant, meant.empty() ? ";" : "");
 }
 
 /// How messages are wanted, where the arguments make no sense as a whole.
@@ -116,8 +116,8 @@ Status add_option_file(std::unique_ptr<CLI::App>& app, luxel::cli::Action& actio
     parse(*app, joined(given, name, options));
     return {};
   } catch (const CLI::ParseError& error) {
-    return luxel::fail(luxel::ErrorCode::bad_setting, "{}: {}; --settings none reads no file", path,
-                       error.what());
+    return luxel::fail(luxel::ErrorCode::bad_setting,
+                       "{}: {}; give --settings none to read no file", path, error.what());
   }
 }
 

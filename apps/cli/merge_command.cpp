@@ -42,16 +42,18 @@ int run_merge(const MergeOptions& options) {
 
 void register_merge(CLI::App& app, Action& action) {
   CLI::App* merge =
-      app.add_subcommand("merge", "End a bake whose parts `luxel bake --part` has left");
+      app.add_subcommand("merge", "Finish a bake from the parts that `luxel bake --part` made");
   auto options = std::make_shared<MergeOptions>();
-  merge->add_option("PART", options->parts, "Files of parts, or folders with some")->required();
-  merge->add_option("-o,--output", options->output, "Folder for the results; made when missing")
+  merge->add_option("PART", options->parts, "Files of parts, or folders that hold them")
+      ->required();
+  merge->add_option("-o,--output", options->output, "Output folder; created if missing")
       ->required();
   merge
       ->add_option("--scene", options->scene,
-                   "Where the scene is (where it was for the parts, seen from here)")
+                   "Scene file (default: the path given to luxel bake --part)")
       ->type_name("FILE");
-  merge->add_option("--max-memory", options->max_memory, "As of luxel bake")->type_name("SIZE");
+  merge->add_option("--max-memory", options->max_memory, "Memory limit, as for luxel bake")
+      ->type_name("SIZE");
   add_import(*merge, options->reading);
   add_outside_light(*merge, options->outside);
   add_common(*merge, options->common);

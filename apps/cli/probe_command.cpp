@@ -33,7 +33,7 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
   if (!s.from.empty() && options.solver_given->count() > 0)
     return fail(
         ErrorCode::bad_setting,
-        "--from takes the light of a bake, --solver {} finds it anew; leave one of them out",
+        "--from takes the light of a bake, and --solver {} computes it anew; leave one of them out",
         options.solver);
   if (!by_faces && !options.hierarchical.empty())
     return pipeline::not_used(s.from.empty() ? "--solver paths" : "--from",
@@ -123,7 +123,7 @@ void print_out_of_time(const pipeline::ProbeSettings& s, const pipeline::Probed&
   if (!p.out_of_time || common.quiet) return;
   const float e = luminance(p.irradiance);
   std::fprintf(stderr, "%s\n",
-               fmt::format("--time-budget {:g} was over at a standard error of {:.2g} %, before "
+               fmt::format("--time-budget {:g} ran out at a standard error of {:.2g} %, above "
                            "--max-error {:g}; give more time for less noise",
                            s.time_budget_s, e > 0 ? 100 * p.luminance_error / e : 100, s.max_error)
                    .c_str());
@@ -150,47 +150,46 @@ int run_probe(const ProbeOptions& options) {
 }  // namespace
 
 void register_probe(CLI::App& app, Action& action) {
-  CLI::App* probe =
-      app.add_subcommand("probe", "Say how much light arrives at a point, and where it comes from");
+  CLI::App* probe = app.add_subcommand(
+      "probe", "Report how much light arrives at a point and where it comes from");
   auto options = std::make_shared<ProbeOptions>();
   pipeline::ProbeSettings& s = options->settings;
   probe->add_option("SCENE", s.scene, "glTF, OBJ, FBX, ... file")->required();
-  probe->add_option("--at", options->at, "The point; the nearest surface is looked at")
+  probe->add_option("--at", options->at, "Point to probe; the nearest surface counts")
       ->type_name("X,Y,Z")
       ->required();
-  probe->add_option("--normal", options->normal, "Only surfaces that face about there")
+  probe
+      ->add_option("--normal", options->normal, "Consider only surfaces that face roughly this way")
       ->type_name("X,Y,Z");
-  probe->add_flag("--in-air", s.in_air, "The point itself, facing --normal or, without it, up");
-  probe->add_option(
-      "--from", s.from,
-      "Folder that `luxel bake` left: rays from the point end on its lightmaps, under "
-      "the sky that it had");
+  probe->add_flag("--in-air", s.in_air,
+                  "Probe the point itself, not a surface, facing --normal (default: up)");
+  probe->add_option("--from", s.from,
+                    "Output folder of a bake: take light from its lightmaps and its sky");
   options->solver_given =
       probe
           ->add_option("--solver", options->solver,
-                       "paths: paths from the point; hierarchical: solve the scene first, then "
-                       "closed forms of what the point sees")
+                       "paths: trace paths from the point; hierarchical: solve the scene, then "
+                       "compute what the point sees in closed form")
           ->check(CLI::IsMember({"paths", "hierarchical"}))
           ->capture_default_str();
   probe
       ->add_option("--max-error", s.max_error,
-                   "Relative standard error at which rays are enough (not for hierarchical)")
+                   "Stop at this relative standard error (not for hierarchical)")
       ->type_name("ERROR")
       ->capture_default_str();
   options->budget_given =
       probe
-          ->add_option("--time-budget", s.time_budget_s,
-                       fmt::format("About when to stop before that; hierarchical: when to stop "
-                                   "refining, or altogether (default there: {:g})",
-                                   pipeline::kUsualSecondsByFaces))
+          ->add_option(
+              "--time-budget", s.time_budget_s,
+              fmt::format("Stop after about this many seconds; hierarchical: stop refining, or "
+                          "fail if there is no result by then (default: {:g})",
+                          pipeline::kUsualSecondsByFaces))
           ->type_name("SECONDS")
           ->capture_default_str();
-  probe->add_option("--seed", s.seed, "Seed of all random numbers")
-      ->check(whole_number())
-      ->capture_default_str();
+  probe->add_option("--seed", s.seed, "Random seed")->check(whole_number())->capture_default_str();
   probe->add_option("-o,--output", s.output,
-                    "A .png with the brightest sources: what the point sees of them is white "
-                    "(hierarchical)");
+                    ".png to write: the brightest sources, in white where the point sees them (for "
+                    "hierarchical)");
   add_options(*probe, pipeline::hierarchical_options(), {}, options->hierarchical,
               pipeline::kHierarchicalHeading);
   add_import(*probe, options->reading);

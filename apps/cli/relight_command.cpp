@@ -31,8 +31,8 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
   std::fprintf(
       stderr, "%s\n",
       fmt::format(
-          "{} patches, {} places, {:.1f} s; matrix {:.2f} MB, which loses "
-          "{:.2f} % of indirect light, seldom more than {:.2f} %",
+          "{} patches, {} places, {:.1f} s; the matrix has {:.2f} MB and "
+          "loses {:.2f} % of indirect light, seldom more than {:.2f} %",
           json["counts"]["patches"].get<uint64_t>(), json["counts"]["places"].get<uint64_t>(),
           json["seconds"]["total"].get<double>(), 1e-6 * json["bytes"]["matrix"].get<double>(),
           100 * json["usual_codec_error"].get<double>(), 100 * json["codec_error"].get<double>())
@@ -40,9 +40,9 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
   const nlohmann::json& error = json["indirect_error"];
   const double own = error["scene_lights"], lamps = error["point_lights"];
   std::string by;
-  if (own > 0) by = fmt::format("{:.1f} % of its mean by the scene's lights", 100 * own);
+  if (own > 0) by = fmt::format("{:.1f} % of its mean for the scene's lights", 100 * own);
   if (lamps > 0)
-    by += fmt::format("{}{:.1f} % of its mean by point lights", own > 0 ? ", " : "", 100 * lamps);
+    by += fmt::format("{}{:.1f} % of its mean for point lights", own > 0 ? ", " : "", 100 * lamps);
   if (!by.empty())
     std::fprintf(stderr, "indirect light errs by at most %s (root mean square, against paths)\n",
                  by.c_str());
@@ -87,7 +87,7 @@ int run_playing(const RelightOptions& options) {
   for (const CLI::Option* option : options.of_making)
     if (option->count() > 0)
       return report(Error{ErrorCode::bad_setting,
-                          fmt::format("{} is for making a file, not for --play; leave it out",
+                          fmt::format("{} is for preparing a scene, not for --play; leave it out",
                                       option->get_name())},
                     options.common);
   if (options.script.empty())
@@ -112,13 +112,12 @@ int run_playing(const RelightOptions& options) {
 int run_relight(const RelightOptions& options) {
   if (!options.lxr.empty()) return run_playing(options);
   if (options.scene.empty())
-    return report(Error{ErrorCode::bad_setting,
-                        "give a SCENE to make a file of, or --play FILE.lxr to show one"},
-                  options.common);
-  if (!options.script.empty())
     return report(
-        Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out here"},
+        Error{ErrorCode::bad_setting, "give a SCENE to prepare, or --play FILE.lxr to play a file"},
         options.common);
+  if (!options.script.empty())
+    return report(Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out"},
+                  options.common);
   return run_together(options, run_making);
 }
 
@@ -132,18 +131,20 @@ void add_making(CLI::App& relight, RelightOptions& options) {
 
 void register_relight(CLI::App& app, Action& action) {
   CLI::App* relight = app.add_subcommand(
-      "relight", "Prepare a scene for light that moves (.lxr), or play such a file");
+      "relight", "Prepare a scene for moving lights as an .lxr file, or play an .lxr file");
   auto options = std::make_shared<RelightOptions>();
   auto* scene = relight->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file to prepare");
   relight
       ->add_option("-o,--output", options->output,
-                   "File to write, .lxr; with --play: folder for the frames")
+                   ".lxr file to write; with --play: folder for the frames")
       ->required();
   add_making(*relight, *options);
-  relight->add_option("--play", options->lxr, "Draw this .lxr file, frame by frame")
+  relight->add_option("--play", options->lxr, "Draw this .lxr file frame by frame")
       ->type_name("FILE.lxr")
       ->excludes(scene);
-  relight->add_option("--script", options->script, "How lights move (docs/method/relight.md)")
+  relight
+      ->add_option("--script", options->script,
+                   "Script that moves the lights (docs/method/relight.md)")
       ->type_name("FILE.json");
   for (CLI::Option* option : add_import(*relight, options->reading))
     options->of_making.push_back(option);

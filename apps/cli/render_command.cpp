@@ -34,7 +34,7 @@ Result<display::ToneMap> parse_tone_map(const std::string& name) {
   std::string names;
   for (const auto& known : display::kToneMaps)
     names += (names.empty() ? "" : ", ") + std::string(known.name);
-  return fail(ErrorCode::bad_setting, "--tone-map {} is not known; there is: {}", name, names);
+  return fail(ErrorCode::bad_setting, "--tone-map {} is not known; choose from: {}", name, names);
 }
 
 Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
@@ -113,7 +113,7 @@ std::string technique_help() {
   std::string help;
   for (const pipeline::Technique& t : pipeline::techniques())
     help += fmt::format("{} = {}\n", t.name, t.help);
-  return help + std::string(pipeline::kAllTechniques) + " = a sheet of all of these";
+  return help + std::string(pipeline::kAllTechniques) + " = a contact sheet of all of these";
 }
 
 std::vector<std::string> technique_names() {
@@ -126,59 +126,60 @@ std::vector<std::string> technique_names() {
 }  // namespace
 
 void register_render(CLI::App& app, Action& action) {
-  CLI::App* render =
-      app.add_subcommand("render", "Draw a scene by one of several techniques, or by all of them");
+  CLI::App* render = app.add_subcommand(
+      "render", "Draw a scene with one technique, or a contact sheet of all of them");
   auto options = std::make_shared<RenderOptions>();
   pipeline::RenderSettings& s = options->settings;
   render->add_option("SCENE", s.scene, "The scene; with --from, the one that was baked")
       ->required();
   render->add_option("-o,--output", s.output, "Picture to write: .png, .exr or .hdr")->required();
-  render->add_option("--from", s.from,
-                     "Folder that `luxel bake` left, drawn under the sky that it had (lightmap)");
+  render->add_option("--from", s.from, "Output folder of the bake to draw; its sky is used");
   render->add_option("--technique", s.technique, technique_help())
       ->check(CLI::IsMember(technique_names()))
       ->capture_default_str();
   render
       ->add_option("--exposure", options->exposure,
-                   "Brightness: auto, auto:PERCENTILE or stops (auto for light, else 0)")
+                   "Exposure: auto, auto:PERCENTILE or stops (default: auto for light, else 0)")
       ->type_name("auto|STOPS");
   render
       ->add_option("--tone-map", options->tone_map,
-                   "Light to the screen (shoulder for light, else clamp)")
+                   "Tone mapping (default: shoulder for light, else clamp)")
       ->type_name("shoulder|ratio|reinhard|filmic|clamp");
-  auto* camera = render->add_option("--camera", s.camera, "Name of a camera of the scene");
+  auto* camera = render->add_option("--camera", s.camera, "Camera of the scene to use, by name");
   auto* view = render->add_option("--view", s.view, std::string(pipeline::kViewHelp))
                    ->type_name("interior|exterior|front|top|CAMERA")
                    ->excludes(camera);
-  auto* eye = render->add_option("--eye", options->eye, "Where the camera stands")
+  auto* eye = render->add_option("--eye", options->eye, "Camera position")
                   ->type_name("X,Y,Z")
                   ->excludes(camera)
                   ->excludes(view);
-  auto* look_at = render->add_option("--look-at", options->look_at, "The point it looks at")
-                      ->type_name("X,Y,Z")
-                      ->needs(eye);
+  auto* look_at =
+      render->add_option("--look-at", options->look_at, "Point that the camera looks at")
+          ->type_name("X,Y,Z")
+          ->needs(eye);
   eye->needs(look_at);
-  render->add_option("--fov-deg", s.fov_deg, "Vertical field of view")
+  render->add_option("--fov-deg", s.fov_deg, "Vertical field of view (1 to 170)")
       ->needs(eye)
-      ->check(CLI::Range(1.0, 170.0))
+      ->check(CLI::Range(1.0, 170.0).description(""))
+      ->type_name("DEGREES")
       ->capture_default_str();
   render
       ->add_option("--size", options->size,
-                   "Size of the picture (960x720), or of each tile with all (320x240)")
+                   "Picture size (default: 960x720), or tile size with all (default: 320x240)")
       ->type_name("WxH");
-  render->add_option("--samples", s.samples, "Paths per pixel (path; 64)");
-  render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
-  render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)")
-      ->check(whole_number());
-  add_device(*render, options->device,
-             "What follows paths, or looks through hemicubes (path, radiosity)");
+  render->add_option("--samples", s.samples, "Paths per pixel (for path; default: 64)");
+  render->add_option("--bounces", options->bounces,
+                     "Number of bounces, or inf (for path; default: inf)");
+  render->add_option("--seed", s.seed, "Random seed (for path; default: 1)")->check(whole_number());
+  add_device(*render, options->device, "Where to compute paths (path) or hemicubes (radiosity)");
   add_options(*render, pipeline::hemicube_options(), {}, options->hemicube,
               pipeline::kHemicubeHeading);
   add_options(*render, pipeline::hierarchical_options(), {}, options->hierarchical,
               pipeline::kHierarchicalHeading);
   render
-      ->add_option("--overlay", options->overlay,
-                   "Lines over pictures of hierarchical radiosity: " + pipeline::overlay_names())
+      ->add_option(
+          "--overlay", options->overlay,
+          "Draw these over pictures of hierarchical radiosity: " + pipeline::overlay_names())
       ->type_name("NAME,NAME,...")
       ->group(std::string(pipeline::kHierarchicalHeading));
   add_import(*render, options->reading);

@@ -33,7 +33,7 @@ void on_fault(int signal, siginfo_t* info, void*) {
     return;
   }
 #define LUXEL_STACK_IS_FULL \
-  "the stack is full; the parts of a file lie in each other too deep, or in circles"
+  "the stack is full; the parts of a file are nested too deeply, or in circles"
   print(STDERR_FILENO, events_wanted
                            ? "{\"event\":\"error\",\"code\":\"bad_input\",\"exit_code\":1,"
                              "\"message\":\"" LUXEL_STACK_IS_FULL "\"}\n"

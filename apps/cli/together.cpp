@@ -33,9 +33,10 @@ void say_when_nobody_does(const cluster::Joined& joined, const std::string& unsa
 void add_processes_per_node(CLI::App& command, int& processes_per_node) {
   command
       .add_option("--processes-per-node", processes_per_node,
-                  "Under mpirun or srun: how many processes of each node work, each with a scene "
-                  "of its own; the others lend them their cores")
-      ->check(CLI::Range(1, 1024))
+                  "Under mpirun or srun: number of processes per node that work, each with its own "
+                  "copy of the scene; the others lend them their cores")
+      ->check(CLI::Range(1, 1024).description(""))
+      ->type_name("COUNT")
       ->capture_default_str();
 }
 

@@ -47,7 +47,7 @@ class ProgressLine {
       // Long work has an estimate early, too.
       const bool known = share > 0.02 || (share > 0 && now.stage_seconds > 3);
       if (known && now.seconds_left < 0)
-        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left of this";
+        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left in this stage";
     }
     if (now.seconds_left >= 0) line += "  " + clock_text(now.seconds_left) + " left";
     std::fprintf(stderr, "\r\033[K%s", line.c_str());

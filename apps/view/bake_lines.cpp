@@ -24,9 +24,9 @@ BakeLines lines_of(const view::LiveBake& live, const view::ShownScene& shown) {
   if (known.kind == view::LiveKind::estimate) out.lines.push_back("shown: an estimate of the edit");
   if (known.kind == view::LiveKind::draft) out.lines.push_back("shown: a coarse draft");
   if (known.kind == view::LiveKind::direct_and_draft)
-    out.lines.push_back("shown: direct light, reflections of the draft");
+    out.lines.push_back("shown: direct light, bounces from the draft");
   if (known.kind == view::LiveKind::direct_and_even_rest)
-    out.lines.push_back("shown: direct light, reflections spread evenly");
+    out.lines.push_back("shown: direct light, bounces spread evenly");
   if (known.kind == view::LiveKind::partly)
     out.lines.push_back(fmt::format("shown: {:.0f} % of the texels' own light", 100 * known.share));
   if (known.kind == view::LiveKind::bake && known.samples > 0)

@@ -79,9 +79,7 @@ void take_sun(const EditPanel& panel, EditSession& session) {
   view::EditTools& tools = session.tools;
   const auto sky = pipeline::parse_sky(panel.sun.data());
   if (!sky) {
-    tools.message =
-        "the sun is to stand at AZIMUTH,ELEVATION in degrees, or where it is seen at "
-        "TIME,LATITUDE,LONGITUDE";
+    tools.message = "give the sun's AZIMUTH,ELEVATION in degrees, or TIME,LATITUDE,LONGITUDE";
     return;
   }
   view::Lamp lamp = tools.desk.now.lamps[*tools.selected.lamp];
@@ -152,7 +150,7 @@ EditPanel panel_of(const EditSession& session) {
 }
 
 std::vector<KeyLine> edit_keys() {
-  std::vector<KeyLine> out{{"click", "select an object; once more, its material"},
+  std::vector<KeyLine> out{{"click", "select an object; click again for its material"},
                            {"left button on a handle", "move, turn, scale"}};
   for (const view::KeyHelp& key : view::kEditKeys) out.push_back({key.key, key.does});
   return out;

@@ -45,7 +45,7 @@ void lay_out_sizes(const HemicubePanel& panel) {
 
 void lay_out_element(HemicubePanel& panel) {
   if (!panel.has_element) {
-    ImGui::TextUnformatted("click a surface: what its vertex sees");
+    ImGui::TextUnformatted("click a surface to see what its vertex sees");
     return;
   }
   lay_out_size(panel);

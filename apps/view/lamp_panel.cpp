@@ -122,7 +122,7 @@ void lay_out_lamps(LampPanel& panel) {
     ImGui::SameLine();
     panel.adds_sun = ImGui::Button("+ sun");
   }
-  if (!panel.glows.empty() && ImGui::CollapsingHeader("materials that glow"))
+  if (!panel.glows.empty() && ImGui::CollapsingHeader("emissive materials"))
     lay_out_lines(panel.glows, panel.selected_glow);
   lay_out_buttons(panel);
   ImGui::SetNextItemOpen(true, ImGuiCond_Once);

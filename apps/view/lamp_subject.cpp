@@ -11,7 +11,7 @@ class LampSubject : public Subject {
   LampSubject(LampSession lamps, view::ShownScene shown)
       : lamps_(std::move(lamps)), shown_(std::move(shown)) {
     if (!view::has_light(lamps_.opened.lamps))
-      said_ = "Nothing shines in " + lamps_.opened.file.filename().string() +
+      said_ = "There is no light in " + lamps_.opened.file.filename().string() +
               ": add a lamp in the panel.";
   }
 

@@ -31,12 +31,10 @@ std::string note_on(const view::Frame& frame, const view::ShownScene& shown,
     case view::Show::overlaps:
       return "red: several surfaces share these texels";
     case view::Show::texels:
-      return "squares of 8 texels, borders of charts blue\n"
-             "green: moved out of a solid; yellow: refilled\n"
-             "black: inside a solid; magenta: shared\n"
-             "red: the sides of a seam differ";
+      return "squares of 8 texels, chart borders blue\ngreen: moved out of a solid; yellow: "
+             "refilled\nblack: inside a solid; magenta: shared\nred: the sides of a seam differ";
     case view::Show::checker:
-      return "a square for each texel";
+      return "one square per texel";
     default:
       return "";
   }

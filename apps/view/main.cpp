@@ -70,11 +70,10 @@ constexpr std::string_view kHierarchical = "hierarchical", kHemicube = "hemicube
 Status check_inside(const Options& options) {
   const std::string& solver = options.choice.solver;
   if (options.inside != kHierarchical && options.inside != kHemicube)
-    return fail(ErrorCode::bad_setting, "--inside '{}' cannot be looked into; there are: {}, {}",
+    return fail(ErrorCode::bad_setting, "--inside {} is not known; choose from: {}, {}",
                 options.inside, kHierarchical, kHemicube);
   if (!is_scene(options.subject))
-    return fail(ErrorCode::bad_setting,
-                "--inside is for a scene, whose light is made while you look; {} is no such file",
+    return fail(ErrorCode::bad_setting, "--inside needs the file of a scene; {} is not one",
                 options.subject.empty() ? "nothing" : options.subject.string());
   if (!solver.empty() && solver != options.inside)
     return fail(ErrorCode::bad_setting, "--solver {} contradicts --inside {}", solver,
@@ -91,17 +90,15 @@ Status check_inside(const Options& options) {
 /// Errors: what is no scene, or looked at in another way.
 Status check_relight(const Options& options) {
   if (!options.relight && !options.of_lxr.empty())
-    return fail(ErrorCode::bad_setting, "{} is for --relight; leave it out, or add that",
+    return fail(ErrorCode::bad_setting, "{} is for --relight; leave it out, or add --relight",
                 options.of_lxr.values[0].first);
   if (!options.relight) return {};
   if (view::is_lxr(options.subject))
     return fail(ErrorCode::bad_setting,
-                "{} is prepared already: its lamps move without --relight; leave it out",
+                "{} is already prepared: its lamps move without --relight; leave it out",
                 options.subject.string());
   if (!is_scene(options.subject))
-    return fail(ErrorCode::bad_setting,
-                "--relight is for a scene, which is prepared for lamps that move; {} is no such "
-                "file",
+    return fail(ErrorCode::bad_setting, "--relight needs the file of a scene; {} is not one",
                 options.subject.string());
   if (!options.inside.empty() || !options.choice.solver.empty())
     return fail(ErrorCode::bad_setting, "--relight has its own solver; leave {} out",
@@ -121,23 +118,22 @@ Status check_choice(const Options& options) {
   if (options.subject.empty() && options.beside.empty() && options.inside.empty()) return {};
   if (!options.beside.empty() && is_scene(options.subject))
     return fail(ErrorCode::bad_setting,
-                "--beside shows a second bake beside a first one; {} is no folder of a bake",
+                "--beside needs a first bake to compare with; {} is not the folder of a bake",
                 options.subject.string());
   if (!options.more.empty() && options.inside != kHemicube)
-    return fail(ErrorCode::bad_setting,
-                "several models are one scene with --inside {} alone; give one without it",
+    return fail(ErrorCode::bad_setting, "only --inside {} takes several models; give one model",
                 kHemicube);
   if (!options.inside.empty()) LUXEL_TRY_STATUS(check_inside(options));
   LUXEL_TRY_STATUS(check_relight(options));
   if (choice.given.has("--part"))
-    return fail(ErrorCode::bad_setting, "a window shows all of a bake; leave --part out");
+    return fail(ErrorCode::bad_setting, "a window shows a whole bake; leave --part out");
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
   if (!choice.output.empty()) flag = "--output";
   if (!choice.given.empty()) flag = choice.given.values[0].first;
   if (is_scene(options.subject) || flag.empty()) return {};
-  return fail(ErrorCode::bad_setting, "{} is for a scene that is to be baked; {} is no such file",
+  return fail(ErrorCode::bad_setting, "{} is for a scene to bake; {} is not the file of a scene",
               flag, options.subject.string());
 }
 
@@ -317,45 +313,46 @@ int report(const Error& error) {
 }
 
 void add_own(CLI::App& app, Options& options) {
-  app.add_option(
-      "SUBJECT", options.subject,
-      "A scene, which is baked while you look, with all options of `luxel bake`; the "
-      "folder that a bake left; or an .lxr file, whose lamps move; without any, drop one "
-      "on the window");
-  app.add_option("MODELS", options.more, "More models of one scene, with --inside hemicube");
+  app.add_option("SUBJECT", options.subject,
+                 "A scene to bake while you look, with all options of `luxel bake`; the output "
+                 "folder of a bake; or an .lxr file, whose lamps you can move; without SUBJECT, "
+                 "drop one of them on the window");
+  app.add_option("MODELS", options.more, "More models for the same scene, with --inside hemicube");
   app.add_option("-o,--output", options.choice.output,
-                 "Where 'save' puts the bake of a scene (baked/NAME)")
+                 "Folder to which 'save' writes the bake of a scene (default: baked/NAME)")
       ->type_name("FOLDER");
-  app.add_option("--beside", options.beside, "The folder of a second bake, to be compared")
+  app.add_option("--beside", options.beside, "Output folder of a second bake to compare with")
       ->type_name("FOLDER");
   app.add_option("--inside", options.inside,
-                 "Look into a solver while it makes the light of a scene: hierarchical, hemicube")
+                 "Watch a solver from the inside while it computes the light of a scene: "
+                 "hierarchical, hemicube")
       ->type_name("SOLVER");
   app.add_flag("--relight", options.relight,
-               "Prepare a scene, as `luxel relight` does, so that its lamps move with all bounces; "
-               "with the options of that");
+               "Prepare a scene as `luxel relight` does, and with its options, so that its lamps "
+               "move with all bounces");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
-                                    "The picture to write: .png; of a window at the end of --play");
+                                    "Picture to write, .png; with a window, at the end of --play");
   auto* offscreen =
-      app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")
+      app.add_flag("--offscreen", options.offscreen, "Draw one picture without a window")
           ->needs(screenshot);
   app.add_option("--turntable", options.turn_frames,
-                 "Draw so many pictures of a turn, as out-000.png beside --screenshot out.png")
-      ->check(CLI::Range(1, 999))
+                 "Draw a turntable of N pictures: out-000.png and so on, for --screenshot out.png")
+      ->check(CLI::Range(1, 999).description(""))
       ->type_name("N")
       ->needs(offscreen);
   auto* play = app.add_option("--play", options.play,
-                              "Mouse and keys to play: .json; then the window closes")
+                              "Play the mouse and keys in this .json file, then close the window")
                    ->type_name("FILE");
   app.add_option("--frame-times", options.frame_table,
-                 "Milliseconds and brightness of each frame of --play: .csv")
+                 "Table to write, .csv: milliseconds and brightness of each frame of --play")
       ->type_name("FILE")
       ->needs(play)
       ->excludes("--offscreen");
-  app.add_option("--size", options.size, "Size of the picture or window (that of preview.png)")
+  app.add_option("--size", options.size,
+                 "Size of the picture or window (default: that of preview.png)")
       ->type_name("WxH");
   app.add_option("--device", options.device,
-                 "A part of the graphics device's name (the fastest kind)")
+                 "Part of the name of the graphics device to use (default: the fastest kind)")
       ->type_name("NAME");
 }
 
@@ -373,7 +370,8 @@ void add_hidden_options(CLI::App& app, Options& options) {
 
 int run(int argc, char** argv) {
   Options options;
-  CLI::App app{"Look at light in a window, drawn by the graphics card", "luxel-view"};
+  CLI::App app{"Look at the light of a scene in a window, drawn by the graphics card",
+               "luxel-view"};
   app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
   add_own(app, options);
   add_hidden_options(app, options);
@@ -381,11 +379,11 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    std::fprintf(stderr, "luxel-view: %s; 'luxel-view --help' lists what there is\n", error.what());
+    std::fprintf(stderr, "luxel-view: %s; 'luxel-view --help' lists the options\n", error.what());
     return kUsage;
   }
   if (options.subject.empty() && (options.offscreen || !options.play.empty())) {
-    std::fprintf(stderr, "luxel-view: SUBJECT is required without a window and by --play\n");
+    std::fprintf(stderr, "luxel-view: --offscreen and --play need a SUBJECT\n");
     return kUsage;
   }
   if (!options.screenshot.empty() && !options.offscreen && options.play.empty()) {

@@ -18,8 +18,8 @@ Status prepare_probes(const gpu::Device& device, view::ShownScene& shown, Lookin
   if (!shown.probes) {
     if (shown.folder.empty())
       return fail(ErrorCode::bad_input,
-                  "there are no probes; a scene that is baked with --probes 0.5 has one every half "
-                  "metre, once it is baked");
+                  "there are no probes; give --probes 0.5 to get one every half metre when the "
+                  "bake is done");
     LUXEL_TRY(view::ProbeBalls balls, view::read_probes(shown.folder));
     shown.probes = std::make_shared<const view::ProbeBalls>(std::move(balls));
   }
@@ -71,7 +71,7 @@ PartsPanel parts_panel(const view::Frame& frame, const view::ShownScene& shown) 
   out.is_one = frame.light.most && frame.light.fewest == *frame.light.most && out.part < 0;
   out.words = "shown: " + view::words_of(frame.light);
   if (shown.bounced && shown.bounced->is_draft && !frame.light.is_all())
-    out.words += "\nreflections are those of the draft";
+    out.words += "\nbounces are those of the draft";
   if (!frame.layers.empty() && !frame.light.is_all()) out.words += "\nlayers are as baked";
   return out;
 }

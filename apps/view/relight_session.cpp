@@ -34,7 +34,7 @@ bool take_asked(const RelitLive& live, std::string& message, RelightSession& ses
   if (!std::exchange(session.asks, false)) return false;
   if (session.maker) {
     stop(live, session);
-    message = "preparing was stopped";
+    message = "preparation was stopped";
     return false;
   }
   if (session.shows_lamps) {
@@ -54,7 +54,7 @@ bool take_asked(const RelitLive& live, std::string& message, RelightSession& ses
 Status show_lamps(gpu::Commands& commands, const RelitLive& live, view::MadeLxr made,
                   std::string& message, RelightSession& session) {
   const std::string file = made.opened.file.string();
-  message = made.was_there ? fmt::format("opened {}, which was prepared before", file)
+  message = made.was_there ? fmt::format("opened {}, which was prepared earlier", file)
                            : fmt::format("prepared {}", file);
   session.told = message;
   LUXEL_TRY(session.lamps, lamp_subject(std::move(made.opened))(commands));
@@ -75,7 +75,7 @@ Result<bool> follow_relight(gpu::Commands& commands, const RelitLive& live, std:
   if (!session.maker) return false;
   if (session.made_of != live.desk.changes) {
     stop(live, session);
-    message = "preparing was stopped, since the scene has changed; ask for it again";
+    message = "preparation was stopped because the scene has changed; start it again";
     return false;
   }
   std::optional<Result<view::MadeLxr>> made = session.maker->take();
@@ -111,7 +111,7 @@ RelightLines lines_of(const RelightSession& session) {
   if (at.total == 0) return out;
   out.share = float(double(at.done) / double(at.total));
   if (out.share > 0)
-    out.left = fmt::format("{:.0f} s left of this stage",
+    out.left = fmt::format("{:.0f} s left in this stage",
                            std::ceil(at.stage_seconds * (1 / double(out.share) - 1)));
   return out;
 }

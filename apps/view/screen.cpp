@@ -70,7 +70,7 @@ Result<Screen> open_screen(const Window& window, const std::string& device_name)
   VkSurfaceKHR handle = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(
       gpu::check(glfwCreateWindowSurface(out.device->instance, window.get(), nullptr, &handle),
-                 "the window cannot be drawn into"));
+                 "cannot draw into the window"));
   LUXEL_TRY(gpu::Surface surface, gpu::Surface::adopt(*out.device, handle));
   out.surface.emplace(std::move(surface));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*out.device));

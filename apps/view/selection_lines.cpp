@@ -31,8 +31,8 @@ CurvePlot plot_of(const view::Graph& graph, const std::string& unit) {
   for (const Rgb& e : graph.curve.shown) out.shown.push_back(luminance(e));
   out.lines = lines_of(graph.curve, unit);
   if (graph.surface)
-    out.lines.push_back(fmt::format("over all of it: RMS {:.3g} {}, largest {:.3g}",
-                                    graph.surface->rms, unit, graph.surface->most));
+    out.lines.push_back(fmt::format("overall: RMS {:.3g} {}, largest {:.3g}", graph.surface->rms,
+                                    unit, graph.surface->most));
   return out;
 }
 
@@ -86,7 +86,7 @@ bool take_selection(const view::Event& event, const view::Walk& walk, SelectionS
 
 void add_selection_keys(std::vector<KeyLine>& keys) {
   keys.push_back({"right click", "probe irradiance"});
-  keys.push_back({"shift + right click", "probe what is seen of sources"});
+  keys.push_back({"shift + right click", "probe which part of each source is seen"});
   for (const view::KeyHelp& key : view::kSelectionKeys) keys.push_back({key.key, key.does});
 }
 

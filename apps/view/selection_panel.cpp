@@ -84,7 +84,7 @@ void lay_out_curve(const CurvePlot& plot) {
   ImGui::SameLine();
   ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kBlue), "as shown");
   ImGui::SameLine();
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kRed), "shown less exact");
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kRed), "shown minus exact");
   lay_out_lines(plot.lines);
 }
 

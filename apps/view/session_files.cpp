@@ -42,7 +42,7 @@ Status show_next(std::unique_ptr<Subject> subject, const std::filesystem::path& 
   s.remembered = recall(s.params.habits, s.path);
   s.keys = key_lines(*s.subject);
   s.panel = panel_for(s);
-  if (is_same) s.panel.message = "opened again: it has changed";
+  if (is_same) s.panel.message = "opened again: the file has changed";
   glfwSetWindowTitle(s.window.get(), s.panel.title.c_str());
   return {};
 }

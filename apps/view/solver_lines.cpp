@@ -71,12 +71,12 @@ void add_solution(const view::Piece& piece, SolverPanel& out) {
     out.lines.push_back(fmt::format("{} triangles, {} lines, {} samples",
                                     piece.cut->triangles.size(), piece.cut->lines,
                                     piece.cut->samples));
-  if (piece.is_settled) out.lines.push_back("the last step had nothing to divide");
+  if (piece.is_settled) out.lines.push_back("the last step had nothing to subdivide");
 }
 
 std::string note_on(const view::Piece& piece, const view::ExactPicture* exact,
                     const view::HierarchicalDesk& desk) {
-  if (!view::mesh_of(piece, desk.kind)) return "flat until this is made";
+  if (!view::mesh_of(piece, desk.kind)) return "flat until this is computed";
   if (desk.kind != view::LightKind::exact) return "";
   const double share = !exact || exact->piece != piece.number || exact->pixels.empty()
                            ? 0

@@ -267,7 +267,7 @@ class ImGuiUi : public Ui {
 
   static void lay_out_again(Panel& panel) {
     if (!panel.offers_again) return;
-    ImGui::TextUnformatted("it has changed on disk");
+    ImGui::TextUnformatted("the file has changed on disk");
     ImGui::SameLine();
     panel.asks_again = ImGui::Button("open it again");
   }

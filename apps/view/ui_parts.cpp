@@ -12,8 +12,8 @@ void lay_out_parts(PartsPanel& parts) {
     ImGui::RadioButton(parts.parts[i], &parts.part, int(i));
   }
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
-  if (ImGui::SliderInt("reflections", &parts.bounces, 0, parts.most_bounces)) parts.part = -1;
-  if (ImGui::Checkbox("of this reflection alone", &parts.is_one)) parts.part = -1;
+  if (ImGui::SliderInt("bounces", &parts.bounces, 0, parts.most_bounces)) parts.part = -1;
+  if (ImGui::Checkbox("only this bounce", &parts.is_one)) parts.part = -1;
   ImGui::TextUnformatted(parts.words.c_str());
 }
 

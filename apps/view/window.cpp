@@ -12,7 +12,7 @@ namespace luxel::view_window {
 namespace {
 
 constexpr const char* kWithoutWindow =
-    "draw without a window by --offscreen, or make a page of it by `luxel bake --html`";
+    "draw without a window with --offscreen, or make a web page with `luxel bake --html`";
 
 /// As view::kKeys has it: letters as the keyboard's language prints them.
 std::string name_of(int key, int code) {
@@ -64,8 +64,7 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   out->window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (!out->window_)
-    return fail(ErrorCode::no_device, "a window cannot be opened on this display; {}",
-                kWithoutWindow);
+    return fail(ErrorCode::no_device, "cannot open a window on this display; {}", kWithoutWindow);
   out->listen();
   return out;
 }

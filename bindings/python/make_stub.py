@@ -14,9 +14,9 @@ from luxel import _luxel  # noqa: E402
 
 STUB = HERE / "luxel" / "__init__.pyi"
 TABLES = {"load": _luxel._options_of_load, "bake": _luxel._options_of_bake, "relighter": _luxel._options_of_relighter}
-BY_HAND = {"bake": [("solver", "str", "How light is computed", "gather"),
-                    ("settings", "Value", "Take scene and settings from the bake.json of an earlier bake", "")],
-           "relighter": [("threads", "int", "Threads to use; 0 = all cores", "0")]}
+BY_HAND = {"bake": [("solver", "str", "Solver that computes the light", "gather"),
+                    ("settings", "Value", "Read scene and settings from the bake.json of an earlier bake", "")],
+           "relighter": [("threads", "int", "Number of threads; 0: all cores", "0")]}
 
 
 def lines_of(name, indent):

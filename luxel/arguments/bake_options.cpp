@@ -46,12 +46,13 @@ CLI::Option* add_bake_settings(CLI::App& command, BakeChoice& choice) {
   CLI::Option* settings =
       command
           .add_option("--settings", choice.settings,
-                      "Take scene and settings from the bake.json of an earlier bake, or options "
+                      "Read scene and settings from the bake.json of an earlier bake, or options "
                       "from a .toml file (default: luxel.toml beside the scene; none: no file); "
-                      "options given beside it win")
+                      "the command line overrides the file")
           ->type_name("FILE|none");
   command
-      .add_option("--solver", choice.solver, "How light is computed: " + pipeline::solver_names())
+      .add_option("--solver", choice.solver,
+                  "Solver that computes the light: " + pipeline::solver_names())
       ->type_name("NAME")
       ->default_str(pipeline::BakeSettings{}.solver);
   return settings;

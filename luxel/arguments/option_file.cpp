@@ -115,10 +115,10 @@ Result<std::string> located(const Reader& in, const toml::node& node, const fs::
   const fs::path folder = in.file.path.parent_path();
   if (in.file.is_named) return (folder / stated).string();
   const fs::path real = real_path(folder / stated);
-  if (real.empty()) return in.wrong(node, "there is no {}", (folder / stated).string());
+  if (real.empty()) return in.wrong(node, "{} does not exist", (folder / stated).string());
   if (real != real_path(folder) && !lies_below(real, folder))
     return in.wrong(node,
-                    "{} lies outside of this file's folder; copy it there, or give --settings {}",
+                    "{} lies outside this file's folder; copy it there, or give --settings {}",
                     stated.string(), in.file.path.string());
   return real.string();
 }
@@ -143,7 +143,7 @@ Result<std::string> with_located_path(const Reader& in, const toml::node& node,
 /// Strings, numbers and lists of those as the command line has them.
 Result<std::string> text_of(const Reader& in, std::string_view key, const toml::node& node) {
   if (const auto* text = node.as_string()) {
-    if (text->get().empty()) return in.wrong(node, "{} is an empty text", key);
+    if (text->get().empty()) return in.wrong(node, "{} is empty", key);
     return text->get();
   }
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
@@ -151,13 +151,13 @@ Result<std::string> text_of(const Reader& in, std::string_view key, const toml::
   if (const auto* list = node.as_array(); list && !list->empty()) {
     std::string out;
     for (const toml::node& one : *list) {
-      if (one.is_array()) return in.wrong(one, "{} has a list in a list", key);
+      if (one.is_array()) return in.wrong(one, "{} has a list within a list", key);
       LUXEL_TRY(const std::string text, text_of(in, key, one));
       out += (out.empty() ? "" : ",") + text;
     }
     return out;
   }
-  return in.wrong(node, "{} is neither a text in quotes nor a number nor a list of those", key);
+  return in.wrong(node, "{} must be a text in quotes, a number, or a list of those", key);
 }
 
 /// A switch that is on, or off by the option that turns it off; nothing where it is as it is.
@@ -177,8 +177,8 @@ Result<std::vector<std::string>> read_option(const Reader& in, std::string_view 
   const CLI::Option* option = in.command.get_option_no_throw(flag);
   const CLI::Option* off = in.command.get_option_no_throw("--no-" + name);
   if (!in.file.is_named && is_among(kOnlyWhenNamed, name))
-    return in.wrong(node, "{} is for the command line, or for a file that --settings names", key);
-  if (is_among(kNotForFiles, name)) return in.wrong(node, "{} is for the command line", key);
+    return in.wrong(node, "{} belongs on the command line, or in a file given by --settings", key);
+  if (is_among(kNotForFiles, name)) return in.wrong(node, "{} belongs on the command line", key);
   if (!option && !off)
     return in.wrong(node, "luxel {} has no option '{}'{}", in.table, key,
                     did_you_mean(name, keys_of(in.command)));
@@ -212,7 +212,7 @@ Status read_table(const Reader& in, const toml::table& options, const std::strin
     const toml::table* inner = node.as_table();
     const bool of_solver = inner && pipeline::find_solver(key.str());
     if (of_solver && !in.command.get_option_no_throw("--solver"))
-      return in.wrong(node, "luxel {} has no --solver; its options stand below [{}]", in.table,
+      return in.wrong(node, "luxel {} has no --solver; put its options below [{}]", in.table,
                       in.table);
     if (of_solver) {
       if (key.str() == solver) LUXEL_TRY_STATUS(read_table(in, *inner, solver, out));
@@ -228,10 +228,10 @@ Result<toml::table> read_toml(const OptionFile& file) {
   std::error_code failed;
   const fs::path real = real_path(file.path);
   if (!file.is_named && real.parent_path() != real_path(file.path.parent_path()))
-    return fail(ErrorCode::bad_input, "{} is a link that leads elsewhere; give --settings {}",
+    return fail(ErrorCode::bad_input, "{} is a link to another folder; give --settings {}",
                 file.path.string(), file.path.string());
   if (fs::file_size(file.path, failed) > kMostBytes && !failed)
-    return fail(ErrorCode::bad_input, "{} is no file of options: it has over {} bytes",
+    return fail(ErrorCode::bad_input, "{} is not a file of options: it has over {} bytes",
                 file.path.string(), kMostBytes);
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file.path));
   try {
@@ -256,11 +256,10 @@ Status check_tables(const Reader& in, const toml::table& all) {
   const std::vector<std::string> commands = commands_beside(in.command, in.table);
   for (const auto& [key, node] : all) {
     if (!node.is_table())
-      return in.wrong(node,
-                      "'{}' stands outside of a table; options of luxel bake belong in [bake]",
+      return in.wrong(node, "'{}' is outside any table; options of luxel bake belong in [bake]",
                       key.str());
     if (!is_among(commands, key.str()))
-      return in.wrong(node, "there is no command '{}' that reads this file{}", key.str(),
+      return in.wrong(node, "no command '{}' reads this file{}", key.str(),
                       did_you_mean(key.str(), commands));
   }
   return {};

@@ -26,7 +26,7 @@ Status check_params(const AtlasParams& params) {
                 kMaxPages);
   if (params.pages > 1 && params.texels_per_metre > 0)
     return fail(ErrorCode::bad_setting,
-                "pages {}: texels per metre {} says how many there are; leave the density out or "
+                "pages {}: texels per metre {} already sets their number; leave the density out or "
                 "choose automatic pages",
                 params.pages, params.texels_per_metre);
   if (params.uv == UvMode::keep && !is_one_page(params))

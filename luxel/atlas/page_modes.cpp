@@ -104,8 +104,8 @@ Status check_lengths(const scene::Scene& scene, const std::vector<FlatChart>& ch
             ? fmt::format("raise --resolution to {}", std::bit_ceil(unsigned(std::ceil(texels))))
             : "choose a lower density";
     return fail(ErrorCode::bad_setting,
-                "texels per metre {}: a surface of instance {} '{}' that triangles leave in one "
-                "piece is {:.3g} m long, {:.0f} texels, and a page has {}; {}",
+                "texels per metre {}: a surface of instance {} '{}' that cannot be cut further is "
+                "{:.3g} m long, {:.0f} texels, and a page has {}; {}",
                 params.texels_per_metre, i, scene.instances[i].name,
                 length_m / double(scene::layout_density(scene.instances[i])), std::ceil(texels),
                 params.resolution, advice);

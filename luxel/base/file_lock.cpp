@@ -26,8 +26,8 @@ Result<FileLock> FileLock::take(const std::filesystem::path& path, const std::st
       return fail(ErrorCode::io, "cannot write {}: {}", path.string(), std::strerror(errno));
     if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       ::close(file);
-      return fail(ErrorCode::bad_setting,
-                  "another process is at work on {}; wait until it has ended", what);
+      return fail(ErrorCode::bad_setting, "another process is using {}; wait until it has ended",
+                  what);
     }
     if (is_still_there(file, path) || attempt == 9) return FileLock(path, file);
     ::close(file);

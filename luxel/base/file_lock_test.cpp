@@ -17,7 +17,7 @@ TEST(FileLock, IsHeldByOneAtATime) {
     const auto second = FileLock::take(file, "the work");
     ASSERT_FALSE(second);
     EXPECT_THAT(second.error().message,
-                ::testing::HasSubstr("another process is at work on the work; wait"));
+                ::testing::HasSubstr("another process is using the work; wait"));
     EXPECT_TRUE(std::filesystem::exists(file));
   }
   EXPECT_FALSE(std::filesystem::exists(file)) << "nothing of it stays";

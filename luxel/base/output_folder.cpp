@@ -103,7 +103,7 @@ Status OutputFolder::lock() {
     return {};  // not every file system has locks
   made_.clear();
   return fail(ErrorCode::bad_setting,
-              "another bake is at work in {}; wait until it has ended, or give another --output",
+              "another bake is using {}; wait until it has ended, or give another --output",
               folder_.string());
 }
 

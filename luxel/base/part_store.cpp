@@ -13,7 +13,7 @@ Clock::duration seconds(double s) {
 }
 
 std::string note_of(const Error& error) {
-  return error.message + "; the work goes on, but what is finished from now on is not kept";
+  return error.message + "; the work goes on, but parts finished from now on are not saved";
 }
 
 }  // namespace

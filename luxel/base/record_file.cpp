@@ -133,7 +133,7 @@ Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags
   struct stat about {};
   if (::fstat(file, &about) != 0) return io_error("open", path, errno);
   if (!S_ISREG(about.st_mode))
-    return fail(ErrorCode::io, "{} is no file on a disk; only those can be read", path.string());
+    return fail(ErrorCode::io, "{} is not a file on a disk; only those can be read", path.string());
   LUXEL_TRY_STATUS(out.read_header(uint64_t(about.st_size)));
   const Status read = out.read_records(uint64_t(about.st_size), check);
   // A network file system may show how long a file is before it shows what is in it.
@@ -149,17 +149,15 @@ Status RecordFile::read_header(uint64_t file_bytes) {
     return damaged(path_, file_bytes, "it ends within its first {} bytes", sizeof(start));
   if (const int error = read_at(file_, 0, std::span(&start, 1)))
     return io_error("read", path_, error);
-  if (start.magic != kMagic)
-    return damaged(path_, 0, "it does not begin like a file of records, format 2");
-  if (start.digest != digest_of_start(start))
-    return damaged(path_, 0, "its start is not as written");
+  if (start.magic != kMagic) return damaged(path_, 0, "it is not a file of records in format 2");
+  if (start.digest != digest_of_start(start)) return damaged(path_, 0, "its start is corrupt");
   if (start.header_bytes > file_bytes - sizeof(start))
     return damaged(path_, file_bytes, "it ends within its header");
   header_.resize(start.header_bytes);
   if (const int error = read_at(file_, sizeof(start), std::span(header_)))
     return io_error("read", path_, error);
   if (digest_of(std::as_bytes(std::span(header_))) != start.header_digest)
-    return damaged(path_, sizeof(start), "its header is not as written");
+    return damaged(path_, sizeof(start), "its header is corrupt");
   end_ = sizeof(start) + start.header_bytes;
   return {};
 }
@@ -172,7 +170,7 @@ Result<bool> RecordFile::read_record(uint64_t file_bytes, Check check,
   if (const int error = read_at(file_, end_, std::span(&start, 1)))
     return io_error("read", path_, error);
   if (start.digest != digest_of_start(start))
-    return damaged(path_, end_, "the start of record {} is not as written", positions_.size() + 1);
+    return damaged(path_, end_, "the start of record {} is corrupt", positions_.size() + 1);
   const uint64_t data = end_ + sizeof(start);
   if (start.bytes > file_bytes - data) return false;
   if (check == Check::now) {
@@ -180,7 +178,7 @@ Result<bool> RecordFile::read_record(uint64_t file_bytes, Check check,
     if (const int error = read_at(file_, data, std::span(bytes)))
       return io_error("read", path_, error);
     if (digest_of(bytes) != start.bytes_digest)
-      return damaged(path_, data, "record {} is not as written", positions_.size() + 1);
+      return damaged(path_, data, "record {} is corrupt", positions_.size() + 1);
   }
   positions_[start.key] = {data, start.bytes, start.bytes_digest};
   end_ = data + start.bytes;

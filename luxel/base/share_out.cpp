@@ -107,7 +107,7 @@ Result<bool> take_message(uint32_t rank, std::span<const std::byte> bytes,
     const uint32_t piece = in.get_value<uint32_t>();
     in.ok = in.ok && piece < pieces.count && pieces.take(piece, rank, in) && in.ok;
   }
-  if (!in.ok) return fail(ErrorCode::io, "what process {} has sent is not whole", rank);
+  if (!in.ok) return fail(ErrorCode::io, "process {} has sent incomplete data", rank);
   return more;
 }
 

@@ -184,7 +184,7 @@ TEST(Exchange, RefusesWhatIsNotWhole) {
                                  }};
       const Status done = exchange(&team, own, pieces, progress);
       ASSERT_FALSE(done);
-      EXPECT_THAT(done.error().message, HasSubstr("is not whole"));
+      EXPECT_THAT(done.error().message, HasSubstr("incomplete data"));
     });
 }
 

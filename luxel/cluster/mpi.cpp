@@ -56,13 +56,13 @@ Status start_mpi() {
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     return fail(ErrorCode::unsupported, "MPI cannot be started");
   if (provided < MPI_THREAD_SERIALIZED)
-    return fail(ErrorCode::unsupported, "this MPI knows no threads; luxel needs them");
+    return fail(ErrorCode::unsupported, "this MPI does not support threads, which luxel needs");
   int size = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   if (size != processes_started())
     return fail(ErrorCode::unsupported,
-                "{} processes were started together, and MPI knows of {}: luxel was built with "
-                "another MPI ({}) than that which has started it",
+                "{} processes were started together, but MPI sees {}: luxel was built with another "
+                "MPI ({}) than the one that started it",
                 processes_started(), size, mpi_version());
   return {};
 }
@@ -176,8 +176,8 @@ std::string mpi_version() { return {}; }
 
 Result<Joined> join_processes(const std::string&, int) {
   return fail(ErrorCode::unsupported,
-              "this luxel was built without MPI; install Open MPI's files for developers "
-              "(libopenmpi-dev) and build it anew, or use luxel bake --part");
+              "this luxel was built without MPI; install Open MPI's development files "
+              "(libopenmpi-dev) and rebuild it, or use luxel bake --part");
 }
 
 void leave_processes(Joined, bool) {}

@@ -213,7 +213,7 @@ class MpiTeam final : public Team {
 
   /// headers(); errors, besides: a member has given up.
   Result<std::vector<int64_t>> gather_headers(int64_t own, Progress& progress) {
-    if (has_failed_) return fail(ErrorCode::cancelled, "another process has given up");
+    if (has_failed_) return fail(ErrorCode::cancelled, "another process has stopped");
     LUXEL_TRY(std::vector<int64_t> out, headers(own, progress));
     if (std::ranges::find(out, kGivenUp) == out.end()) return out;
     const Error error = gather_errors({}, progress);
@@ -232,7 +232,7 @@ class MpiTeam final : public Team {
       const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       return {ErrorCode(int(text.front())), text.substr(1)};
     }
-    return {ErrorCode::io, "a process has given up without a word"};
+    return {ErrorCode::io, "a process has stopped and gave no reason"};
   }
 
   Result<std::vector<std::vector<std::byte>>> gather_bytes(std::span<const std::byte> own,

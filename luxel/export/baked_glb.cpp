@@ -194,7 +194,7 @@ Result<json> document_of(std::span<const std::byte> glb, const std::string& name
   json document =
       whole ? json::parse(text, text + length, nullptr, false) : json(json::value_t::discarded);
   if (!document.is_object())
-    return fail(ErrorCode::bad_input, "{} is no binary glTF file; bake the scene again", name);
+    return fail(ErrorCode::bad_input, "{} is not a binary glTF file; bake the scene again", name);
   return document;
 }
 

@@ -61,8 +61,8 @@ Result<std::vector<std::byte>> put_together(const GltfFile& file, const std::str
     while (text.size() % 4 != 0) text += ' ';
     const size_t whole = 20 + text.size() + file.rest.size();
     if (whole > UINT32_MAX)
-      return fail(ErrorCode::unsupported, "{}: with what it names it has more than 4 GB as .glb",
-                  name);
+      return fail(ErrorCode::unsupported,
+                  "{}: together with the files it names it has more than 4 GB as .glb", name);
     for (const uint32_t word : {0x46546C67u, 2u, uint32_t(whole), uint32_t(text.size()),
                                 0x4E4F534Au})  // "glTF", its version, sizes, "JSON"
       put_word(word, out);
@@ -346,7 +346,7 @@ Result<std::vector<std::byte>> edited_gltf(std::span<const std::byte> bytes,
                                            const ReadUri& read) {
   try {
     std::optional<GltfFile> file = taken_apart(bytes);
-    if (!file) return fail(ErrorCode::bad_input, "{} is no glTF file", name);
+    if (!file) return fail(ErrorCode::bad_input, "{} is not a glTF file", name);
     LUXEL_TRY_STATUS(bring_in_files(file->document, name, read));
     GltfTree tree = tree_of(file->document);
     std::map<uint32_t, size_t> lights_apart;
@@ -357,7 +357,7 @@ Result<std::vector<std::byte>> edited_gltf(std::span<const std::byte> bytes,
     edit_materials(edits, file->document);
     return put_together(*file, name);
   } catch (const std::exception& e) {  // nlohmann-json and memory
-    return fail(ErrorCode::io, "{} cannot be written anew: {}", name, e.what());
+    return fail(ErrorCode::io, "cannot rewrite {}: {}", name, e.what());
   }
 }
 

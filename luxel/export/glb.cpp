@@ -113,7 +113,7 @@ Result<std::vector<std::byte>> finish(Glb glb) {
   const size_t total = 12 + 8 + chunk.size() + (binary.empty() ? 0 : 8 + binary.size());
   if (total > UINT32_MAX)
     return fail(ErrorCode::unsupported,
-                "the scene needs {} bytes as .glb, and the format counts {} at most; bake it in "
+                "the scene needs {} bytes as .glb, and the format allows {} at most; bake it in "
                 "parts or with smaller textures",
                 total, UINT32_MAX);
   std::vector<std::byte> out;

@@ -90,7 +90,7 @@ GltfTree tree_of(OrderedJson& document) {
     if (nodes[n].contains("children"))
       for (const OrderedJson& child : nodes[n]["children"]) order.push_back(child.get<size_t>());
   }
-  if (order.size() != nodes.size()) throw std::runtime_error("its nodes form no trees");
+  if (order.size() != nodes.size()) throw std::runtime_error("its nodes do not form trees");
   out.wanted = out.was;
   return out;
 }

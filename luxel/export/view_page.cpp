@@ -160,10 +160,9 @@ std::optional<View> view_of_json(const json& from) {
 
 Status check_view_page() {
   if (!view_page_before_data().empty()) return {};
-  return fail(
-      ErrorCode::bad_setting,
-      "--html is not in this luxel, which was built without node, npm or a network; install "
-      "nodejs and npm, run make build with a network, and bake again");
+  return fail(ErrorCode::bad_setting,
+              "this luxel has no --html, because it was built without node, npm or a network; "
+              "install nodejs and npm, run make build with a network, and bake again");
 }
 
 Result<std::string> view_html(const ViewPage& page) {

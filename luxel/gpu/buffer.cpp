@@ -40,7 +40,7 @@ Result<OwnedMemory> allocate(const Device& device, const VkMemoryRequirements& n
     if (result == VK_SUCCESS) return OwnedMemory(device, memory);
   }
   return tl::unexpected(
-      check(result, fmt::format("{} ({} MB) cannot be made", what, needed.size >> 20)).error());
+      check(result, fmt::format("cannot create {} ({} MB)", what, needed.size >> 20)).error());
 }
 
 Result<Buffer> make_buffer(const Device& device, VkDeviceSize size, Access access,
@@ -58,7 +58,7 @@ Result<Buffer> make_buffer(const Device& device, VkDeviceSize size, Access acces
   out.size = size;
   VkBuffer buffer = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateBuffer(device.device, &info, nullptr, &buffer),
-                         fmt::format("{} cannot be made", what)));
+                         fmt::format("cannot create {}", what)));
   out.buffer = {device, buffer};
   VkMemoryRequirements needed{};
   device.vk.vkGetBufferMemoryRequirements(device.device, buffer, &needed);

@@ -9,7 +9,7 @@ Result<Commands> Commands::make(const Device& device) {
   pool_info.queueFamilyIndex = device.queue_family;
   VkCommandPool pool = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateCommandPool(device.device, &pool_info, nullptr, &pool),
-                         "the device's commands cannot be recorded"));
+                         "cannot record the device's commands"));
   out.pool_ = {device, pool};
   auto type = structure<VkSemaphoreTypeCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO);
   type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
@@ -17,7 +17,7 @@ Result<Commands> Commands::make(const Device& device) {
   info.pNext = &type;
   VkSemaphore timeline = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateSemaphore(device.device, &info, nullptr, &timeline),
-                         "the device's commands cannot be waited for"));
+                         "cannot wait for the device's commands"));
   out.timeline_ = {device, timeline};
   return out;
 }
@@ -41,7 +41,7 @@ Result<VkCommandBuffer> Commands::next_buffer() {
   info.commandBufferCount = 1;
   VkCommandBuffer buffer = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device_->vk.vkAllocateCommandBuffers(device_->device, &info, &buffer),
-                         "the device's commands cannot be recorded"));
+                         "cannot record the device's commands"));
   return buffer;
 }
 

@@ -245,18 +245,18 @@ tl::unexpected<Error> no_such_device(const std::vector<Candidate>& all,
                                      const DeviceParams& params) {
   if (params.number)
     return fail(ErrorCode::no_device,
-                "no device that can be used has the number {}; there are, from 0 on: {}",
-                *params.number, names_of(all));
+                "no usable device has the number {}; the devices from 0 on: {}", *params.number,
+                names_of(all));
   if (!params.name.empty())
-    return fail(ErrorCode::no_device, "no device that can be used is named '{}'; there are: {}",
+    return fail(ErrorCode::no_device, "no usable device has '{}' in its name; the devices: {}",
                 short_message(params.name), names_of(all));
   if (!params.may_be_software)
     return fail(ErrorCode::no_device,
-                "there is no graphics card that can be used, only: {}; software that runs on the "
-                "processor is used only where its name or number is given",
+                "there is no usable graphics card, only: {}; give the name or number of a software "
+                "device to use it",
                 names_of(all));
-  return fail(ErrorCode::no_device, "no device of this machine can be used: {}; {}", names_of(all),
-              kNoDevice);
+  return fail(ErrorCode::no_device, "no graphics device of this machine is usable: {}; {}",
+              names_of(all), kNoDevice);
 }
 
 }  // namespace
@@ -269,11 +269,11 @@ Status check(VkResult result, std::string_view what) {
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
       return fail(ErrorCode::out_of_memory, "{}: the device has no memory left", what);
     case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return fail(ErrorCode::out_of_memory, "{}: there is no memory left", what);
+      return fail(ErrorCode::out_of_memory, "{}: out of memory", what);
     case VK_ERROR_DEVICE_LOST:
       return fail(ErrorCode::no_device, "{}: the device is lost; its driver has stopped", what);
     default:
-      return fail(ErrorCode::no_device, "{}: Vulkan's error {}", what, int(result));
+      return fail(ErrorCode::no_device, "{}: Vulkan error {}", what, int(result));
   }
 }
 

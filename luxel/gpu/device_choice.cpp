@@ -40,8 +40,8 @@ Result<DeviceChoice> parse_device(std::string_view text) {
   if (text == "auto" || text == "gpu") return out;
   if (!text.starts_with(kNamed) || text == kNamed)
     return fail(ErrorCode::bad_setting,
-                "--device {} is not known; give cpu, gpu, gpu: with the number or a part of the "
-                "name of a device of luxel info --devices, or auto",
+                "--device {} is not known; give cpu, gpu, auto, or gpu: and the number or part of "
+                "the name of a device from luxel info --devices",
                 short_message(std::string(text)));
   text.remove_prefix(kNamed.size());
   out.params.number = number_of(text);

@@ -23,7 +23,7 @@ TEST(DeviceChoice, SaysWhatThereIsToWrite) {
     const auto choice = parse_device(wrong);
     ASSERT_FALSE(choice) << wrong;
     EXPECT_EQ(choice.error().code, ErrorCode::bad_setting);
-    EXPECT_THAT(choice.error().message, HasSubstr("give cpu, gpu, gpu:")) << wrong;
+    EXPECT_THAT(choice.error().message, HasSubstr("give cpu, gpu, auto, or gpu:")) << wrong;
   }
 }
 
@@ -43,7 +43,7 @@ TEST(DeviceChoice, TakesSoftwareOnlyWhereItIsNamed) {
   ASSERT_FALSE(first);
   EXPECT_EQ(first.error().code, ErrorCode::no_device);
   EXPECT_THAT(first.error().message, HasSubstr(devices->front().name));
-  EXPECT_THAT(first.error().message, HasSubstr("is used only where its name or number is given"));
+  EXPECT_THAT(first.error().message, HasSubstr("give the name or number of a software device"));
   const auto any = open_chosen(*parse_device("auto"));
   ASSERT_TRUE(any);
   EXPECT_EQ(any->device, nullptr);

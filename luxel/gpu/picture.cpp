@@ -100,7 +100,7 @@ Result<Picture> make_picture(const Device& device, const PictureParams& params,
   LUXEL_CHECK(params.width > 0 && params.height > 0 && params.levels > 0);
   if (std::max(params.width, params.height) > device.limits.maxImageDimension2D)
     return fail(ErrorCode::unsupported,
-                "{}: {} x {} pixels are more than {} a side, the most of {}", what, params.width,
+                "{}: {} x {} pixels are more than {} a side, the limit of {}", what, params.width,
                 params.height, device.limits.maxImageDimension2D, device.name);
   Picture out;
   out.params = params;
@@ -112,7 +112,7 @@ Result<Picture> make_picture(const Device& device, const PictureParams& params,
   info.samples = params.samples;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = params.usage;
-  const std::string cannot = fmt::format("{} cannot be made", what);
+  const std::string cannot = fmt::format("cannot create {}", what);
   VkImage image = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateImage(device.device, &info, nullptr, &image), cannot));
   out.image = {device, image};
@@ -201,7 +201,7 @@ Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& par
   info.compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL;
   VkSampler sampler = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateSampler(device.device, &info, nullptr, &sampler),
-                         "a sampler cannot be made"));
+                         "cannot create a sampler"));
   return OwnedSampler(device, sampler);
 }
 

@@ -13,7 +13,7 @@ Result<OwnedShader> make_shader(const Device& device, Spirv words) {
   info.pCode = words.data();
   VkShaderModule shader = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateShaderModule(device.device, &info, nullptr, &shader),
-                         "a shader cannot be made"));
+                         "cannot create a shader"));
   return OwnedShader(device, shader);
 }
 
@@ -56,7 +56,7 @@ Result<Pipeline> with_layout(const Device& device, const Interface& interface,
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(
       check(device.vk.vkCreateDescriptorSetLayout(device.device, &set_info, nullptr, &set_layout),
-            "a pipeline cannot be made"));
+            "cannot create a pipeline"));
   out.set_layout = {device, set_layout};
   const VkPushConstantRange range{stages, 0, interface.push_bytes};
   auto info = structure<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
@@ -66,7 +66,7 @@ Result<Pipeline> with_layout(const Device& device, const Interface& interface,
   info.pPushConstantRanges = &range;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreatePipelineLayout(device.device, &info, nullptr, &layout),
-                         "a pipeline cannot be made"));
+                         "cannot create a pipeline"));
   out.layout = {device, layout};
   return out;
 }
@@ -88,7 +88,7 @@ Result<Pipeline> make_compute_pipeline(const Device& device, Spirv shader,
   VkPipeline pipeline = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateComputePipelines(device.device, VK_NULL_HANDLE, 1, &info,
                                                             nullptr, &pipeline),
-                         "a shader that computes cannot be made"));
+                         "cannot create a compute shader"));
   out.pipeline = {device, pipeline};
   return out;
 }
@@ -165,7 +165,7 @@ Result<Pipeline> make_draw_pipeline(const Device& device, const DrawParams& para
   VkPipeline pipeline = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateGraphicsPipelines(device.device, VK_NULL_HANDLE, 1,
                                                              &info, nullptr, &pipeline),
-                         "a shader that draws cannot be made"));
+                         "cannot create a shader that draws"));
   out.pipeline = {device, pipeline};
   return out;
 }
@@ -185,7 +185,7 @@ Result<BindingSets> make_sets(const Device& device, const Pipeline& pipeline,
   VkDescriptorPool pool = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(
       check(device.vk.vkCreateDescriptorPool(device.device, &pool_info, nullptr, &pool),
-            "the shaders' pictures cannot be bound"));
+            "cannot bind the shaders' pictures"));
   out.pool = {device, pool};
   const std::vector<VkDescriptorSetLayout> layouts(wanted.size(), pipeline.set_layout.get());
   auto info =
@@ -195,7 +195,7 @@ Result<BindingSets> make_sets(const Device& device, const Pipeline& pipeline,
   info.pSetLayouts = layouts.data();
   out.sets.resize(wanted.size());
   LUXEL_TRY_STATUS(check(device.vk.vkAllocateDescriptorSets(device.device, &info, out.sets.data()),
-                         "the shaders' pictures cannot be bound"));
+                         "cannot bind the shaders' pictures"));
   for (size_t i = 0; i < wanted.size(); ++i) {
     LUXEL_CHECK(wanted[i].size() == pipeline.interface.bindings.size());
     for (size_t b = 0; b < wanted[i].size(); ++b) {

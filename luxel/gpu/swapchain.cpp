@@ -7,7 +7,7 @@
 namespace luxel::gpu {
 namespace {
 
-constexpr const char* kCannotShow = "the window cannot be drawn into";
+constexpr const char* kCannotShow = "cannot draw into the window";
 
 Result<VkSurfaceFormatKHR> choose_format(const Device& device, VkSurfaceKHR surface) {
   uint32_t count = 0;
@@ -18,7 +18,8 @@ Result<VkSurfaceFormatKHR> choose_format(const Device& device, VkSurfaceKHR surf
     for (const VkSurfaceFormatKHR& format : formats)
       if (format.format == wanted && format.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
         return format;
-  return fail(ErrorCode::no_device, "{}: {} shows no pictures of 8 bits", kCannotShow, device.name);
+  return fail(ErrorCode::no_device, "{}: {} cannot show pictures of 8 bits", kCannotShow,
+              device.name);
 }
 
 Result<Swapchain::Semaphore> make_semaphore(const Device& device) {

@@ -277,9 +277,9 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   add_assimp_cameras(*in, source, transforms, imported.scene);
   if (is_obj)
     imported.about_lost_lights =
-        "an .obj file holds no lights but emissive materials, Ke in its .mtl";
+        "an .obj file can hold no lights except emissive materials (Ke in its .mtl)";
   if (source.extension == ".ply" || source.extension == ".stl")
-    imported.about_lost_lights = fmt::format("{} files hold no lights", source.extension);
+    imported.about_lost_lights = fmt::format("{} files cannot hold lights", source.extension);
   return imported;
 }
 

@@ -34,13 +34,14 @@ Result<ImportedEnvironment> environment_from(const image::Image& picture, const 
     for (int x = 0; x < picture.width; ++x) {
       const Rgb l = picture.rgb(x, y) * scale;
       if (!is_finite(l))
-        return fail(ErrorCode::bad_input, "{}: pixel ({}, {}) is {}, {}, {}, which is no light",
-                    name, x, y, l.x, l.y, l.z);
+        return fail(ErrorCode::bad_input,
+                    "{}: pixel ({}, {}) is {}, {}, {}, which is not a radiance", name, x, y, l.x,
+                    l.y, l.z);
       if (l.x < 0 || l.y < 0 || l.z < 0) ++negative;
       out.map.radiance.push_back(max(l, Rgb{}));
     }
   if (negative > 0)
-    out.warnings.push_back(fmt::format("{}: {} pixels are negative; taken for 0", name, negative));
+    out.warnings.push_back(fmt::format("{}: {} pixels are negative; set to 0", name, negative));
   return out;
 }
 

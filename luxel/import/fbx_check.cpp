@@ -127,8 +127,8 @@ Status check_text(const SourceFile& source) {
       if (depth == 0) section = element.key;
       end_element();
       if (++depth > kDeepestNesting)
-        return fail(ErrorCode::bad_input, "{}, {}: more than {} blocks lie in each other",
-                    source.name, place(at), kDeepestNesting);
+        return fail(ErrorCode::bad_input, "{}, {}: more than {} blocks are nested", source.name,
+                    place(at), kDeepestNesting);
     } else if (word == "}") {
       end_element();
       depth -= depth > 0;
@@ -286,8 +286,8 @@ Status check_binary(const SourceFile& source) {
     if (bytes.at > end || end - bytes.at < sentinel) return {};
     ends.push_back(end - sentinel);
     if (ends.size() > kDeepestNesting)
-      return fail(ErrorCode::bad_input, "{}, {}: more than {} blocks lie in each other",
-                  source.name, place(before), kDeepestNesting);
+      return fail(ErrorCode::bad_input, "{}, {}: more than {} blocks are nested", source.name,
+                  place(before), kDeepestNesting);
   }
   return check_models(source, models, place);
 }

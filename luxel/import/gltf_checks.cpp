@@ -160,7 +160,7 @@ std::vector<std::byte> glb_with_json(std::span<const std::byte> bytes, std::stri
 
 Result<Json> parse_json(const std::string& text, const std::string& file) {
   if (is_nested_too_deep(text))
-    return fail(ErrorCode::bad_input, "{}: its JSON is nested too deep to be glTF", file);
+    return fail(ErrorCode::bad_input, "{}: its JSON is nested too deeply to be glTF", file);
   try {
     Json document = Json::parse(text);
     if (!document.is_object())

@@ -40,8 +40,8 @@ Result<int> image_of(const GltfReader& reader, const tinygltf::Texture& texture,
                                         label("texture", size_t(index), texture.name), user);
   if (texture.extensions.count("KHR_texture_basisu") > 0)
     return fail(ErrorCode::unsupported,
-                "{} is there as KTX2 only (KHR_texture_basisu), which luxel cannot decode; export "
-                "it with PNG or JPEG textures",
+                "{} exists only as KTX2 (KHR_texture_basisu), which luxel cannot decode; export it "
+                "with PNG or JPEG textures",
                 where);
   return fail(ErrorCode::unsupported,
               "{} has no picture that luxel can decode; export it with PNG or JPEG textures",

@@ -280,7 +280,7 @@ TEST(GltfMaterial, Ktx2IsReplacedByItsFallbackOrSaid) {
   ASSERT_FALSE(needed);
   EXPECT_EQ(needed.error().code, ErrorCode::unsupported);
   EXPECT_THAT(needed.error().message,
-              HasSubstr("a.glb: texture 0 of material 0 (brick) is there as KTX2 only "
+              HasSubstr("a.glb: texture 0 of material 0 (brick) exists only as KTX2 "
                         "(KHR_texture_basisu), which luxel cannot decode; export it with PNG or "
                         "JPEG textures"));
   // It is not needed as a normal map.

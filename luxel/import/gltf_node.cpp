@@ -150,7 +150,7 @@ LightmapExtras lightmap_extras(GltfReader& reader, const tinygltf::Value& extras
     if (density >= double(scene::kMinTexelDensity) && density <= double(scene::kMaxTexelDensity))
       out.density = float(density);
     else
-      reader.warn("{}: extras.luxel.density is no number from {} to {} and is ignored", where,
+      reader.warn("{}: extras.luxel.density is not a number from {} to {} and is ignored", where,
                   scene::kMinTexelDensity, scene::kMaxTexelDensity);
   }
   if (const tinygltf::Value* v = luxel_extra(extras, "bake", "luxel_bake")) {

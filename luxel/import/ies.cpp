@@ -65,8 +65,7 @@ Status skip_tilt(const Header& header, IesNumbers& numbers, Ies& out) {
   for (int i = 0; i < count; ++i) LUXEL_TRY_STATUS(numbers.within("a tilt", -360, 360));
   for (int i = 0; i < count; ++i) LUXEL_TRY_STATUS(numbers.within("a factor of tilt", 0, kMany));
   out.warnings.push_back(
-      fmt::format("{}: its TILT table is left alone: lamps shine as they were measured, however "
-                  "they are turned",
+      fmt::format("{}: its TILT table is ignored: lamps shine as measured, however they are tilted",
                   numbers.name()));
   return {};
 }
@@ -88,7 +87,7 @@ Result<Dimensions> read_dimensions(const Header& header, IesNumbers& numbers, Ie
   LUXEL_TRY(d.vertical, numbers.count("the number of vertical angles", 2, kMostAngles));
   LUXEL_TRY(d.horizontal, numbers.count("the number of horizontal angles", 1, kMostAngles));
   if (size_t(d.vertical) * size_t(d.horizontal) > kMostCandela)
-    return fail(ErrorCode::bad_input, "{}: line {}: {} x {} angles are more than luxel takes",
+    return fail(ErrorCode::bad_input, "{}: line {}: {} x {} angles are more than luxel can read",
                 numbers.name(), numbers.line(), d.vertical, d.horizontal);
   LUXEL_TRY(const int type, numbers.count("the photometric type", 1, 3));
   d.angles = std::array{Angles::c, Angles::b, Angles::a}[size_t(type - 1)];
@@ -188,8 +187,8 @@ Status set_vertical(const IesNumbers& numbers, const std::vector<double>& degree
                 numbers.line(), degrees.front(), degrees.back(), low, high);
   if (!is_c && is(degrees.front(), 0))
     return fail(ErrorCode::unsupported,
-                "{}: line {}: vertical angles of Type {} begin at 0, and nothing says what is "
-                "below; give them from -90",
+                "{}: line {}: vertical angles of Type {} begin at 0, so the light below is "
+                "unknown; give them from -90",
                 numbers.name(), numbers.line(), out.angles == Angles::b ? "B" : "A");
   for (const double d : degrees) out.vertical_rad.push_back(radians(d));
   return {};
@@ -204,7 +203,7 @@ Status set_candela(IesNumbers& numbers, const Dimensions& d, const std::vector<C
       LUXEL_TRY(const double candela, numbers.within("candela", 0, kMany));
       const double scaled = candela * d.factor;
       if (!(scaled <= 1e30))
-        return fail(ErrorCode::bad_input, "{}: line {}: candela {} times {} is too much",
+        return fail(ErrorCode::bad_input, "{}: line {}: candela {} times {} is too large",
                     numbers.name(), numbers.line(), candela, d.factor);
       read.push_back(float(scaled));
     }
@@ -235,8 +234,8 @@ Result<Ies> parse_ies(std::string_view text, const std::string& name) {
   const auto columns = d.angles == Angles::c ? all_round(horizontal) : side_by_side(horizontal);
   if (!columns)
     return fail(ErrorCode::bad_input,
-                "{}: line {}: horizontal angles {} to {} are of no symmetry that LM-63 knows ({})",
-                name, numbers.line(), horizontal.front(), horizontal.back(),
+                "{}: line {}: horizontal angles {} to {} match no symmetry of LM-63 ({})", name,
+                numbers.line(), horizontal.front(), horizontal.back(),
                 d.angles == Angles::c ? "0; 0 to 90, 180 or 360; 90 to 270" : "0 or -90 to 90");
   LUXEL_TRY_STATUS(set_candela(numbers, d, *columns, out.profile));
   LUXEL_TRY_STATUS(numbers.end());

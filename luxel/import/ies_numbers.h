@@ -53,10 +53,10 @@ class IesNumbers {
   Status end() {
     const std::string_view word = next_word();
     if (word.empty()) return {};
-    return fail(ErrorCode::bad_input,
-                "{}: line {}: '{}' follows the last candela that the numbers of angles ask for; "
-                "correct them",
-                name_, line_, word.substr(0, 40));
+    return fail(
+        ErrorCode::bad_input,
+        "{}: line {}: '{}' follows the last candela that the numbers of angles allow; correct them",
+        name_, line_, word.substr(0, 40));
   }
 
   int line() const { return line_; }  ///< of the number read last

@@ -219,10 +219,10 @@ TEST(Ies, BadFilesAreSaid) {
               AllOf(HasSubstr("line 7"), HasSubstr("45 does not follow 45")));
   EXPECT_THAT(error_of(Parts{.vertical = "-90 45 90"}), HasSubstr("-90 to 90 are not within"));
   EXPECT_THAT(error_of(Parts{.counts = "3 2", .horizontal = "0 100", .candela = "1 1 1 1 1 1"}),
-              HasSubstr("0 to 100 are of no symmetry"));
+              HasSubstr("0 to 100 match no symmetry"));
   EXPECT_THAT(error_of(Parts{.type = "4"}), HasSubstr("the photometric type 4"));
   EXPECT_THAT(error_of(Parts{.counts = "2000000000 1"}), HasSubstr("2000000000 is outside 2 to"));
-  EXPECT_THAT(error_of(Parts{.counts = "36000 36000"}), HasSubstr("more than luxel takes"));
+  EXPECT_THAT(error_of(Parts{.counts = "36000 36000"}), HasSubstr("more than luxel can read"));
   EXPECT_THAT(error_of(Parts{.counts = "3.5 1"}), HasSubstr("3.5 is not a whole number"));
   EXPECT_THAT(error_of(Parts{.counts = "1 1"}), HasSubstr("vertical angles 1"));
   EXPECT_THAT(error_of(Parts{.lamp = "1 1000 0"}), HasSubstr("the multiplier 0"));

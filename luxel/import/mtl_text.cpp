@@ -109,8 +109,8 @@ void add_library(std::string_view text, const std::string& name, MtlText& out,
   }
   if (left_out > 0)
     warnings.push_back(fmt::format(
-        "{}: {} left out, the first in line {}: {} no material above or no value that can be used",
-        name, left_out == 1 ? "1 line is" : fmt::format("{} lines are", left_out), first,
+        "{}: {} left out, the first in line {}: {} no material above or no usable value", name,
+        left_out == 1 ? "1 line is" : fmt::format("{} lines are", left_out), first,
         left_out == 1 ? "it has" : "they have"));
 }
 
@@ -128,12 +128,12 @@ void add_libraries(std::string_view names, const SourceFile& source, MtlText& ou
   const Status status = add(whole);
   if (status) return;
   if (whole.find_first_of(kBlank) == whole.npos) {
-    warnings.push_back(status.error().message + "; a white that reflects 0.8 is used");
+    warnings.push_back(status.error().message + "; white with a reflectance of 0.8 is used");
     return;
   }
   for (std::string_view word; !(word = next_word(names)).empty();)
     if (const Status one = add(word); !one)
-      warnings.push_back(one.error().message + "; a white that reflects 0.8 is used");
+      warnings.push_back(one.error().message + "; white with a reflectance of 0.8 is used");
 }
 
 }  // namespace luxel::import

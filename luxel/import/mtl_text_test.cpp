@@ -43,7 +43,7 @@ TEST(MtlText, LeavesOutWhatIsWrongAndSaysWhere) {
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0],
             "m.mtl: 9 lines are left out, the first in line 2: they have no material above or no "
-            "value that can be used");
+            "usable value");
 }
 
 constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";

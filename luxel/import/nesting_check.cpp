@@ -12,7 +12,7 @@ namespace luxel::import {
 namespace {
 
 tl::unexpected<Error> too_deep(const SourceFile& source, size_t at, const char* what) {
-  return fail(ErrorCode::bad_input, "{}, line {}: more than {} {} lie in each other", source.name,
+  return fail(ErrorCode::bad_input, "{}, line {}: more than {} {} are nested", source.name,
               line_of(text_of(source.bytes), at), kDeepestNesting, what);
 }
 
@@ -125,11 +125,10 @@ std::optional<WrongNesting> wrong_nesting(const std::vector<std::vector<uint32_t
       depths[part] = std::max(depths[part], depths[held] + 1);
       counts[part] += counts[held];
       if (counts[part] > most)
-        return WrongNesting{part, fmt::format("holds more than {} others, with copies", most)};
+        return WrongNesting{part, fmt::format("holds more than {} others, counting copies", most)};
     }
     if (depths[part] > kDeepestNesting + 1)
-      return WrongNesting{part,
-                          fmt::format("holds more than {} others in each other", kDeepestNesting)};
+      return WrongNesting{part, fmt::format("holds more than {} nested others", kDeepestNesting)};
     states[part] = State::done;
     path.pop_back();
   }

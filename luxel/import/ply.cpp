@@ -203,7 +203,7 @@ Status read_elements(const SourceFile& source, const PlyElement& element, uint64
                      PlyNumbers& numbers, Surfaces& out) {
   // Nothing to read is nothing that a wrong count would run into.
   if (element.properties.empty() && element.count > source.bytes.size())
-    return fail(ErrorCode::bad_input, "{}: there are {} of the element {}, and no properties",
+    return fail(ErrorCode::bad_input, "{}: {} entries of the element {} have no properties",
                 source.name, element.count, element.name);
   const std::vector<char> used = used_properties(element, out);
   uint64_t taken = out.bytes();

@@ -103,7 +103,7 @@ Result<PlyHeader> read_ply_header(const SourceFile& source) {
     }
     if (!words.empty() && words[0] == "end_header") break;
     if (!read_line(line, words, header))
-      return fail(ErrorCode::bad_input, "{}, line {}: this line of the header makes no sense",
+      return fail(ErrorCode::bad_input, "{}, line {}: cannot understand this line of the header",
                   source.name, number);
   }
   if (header.format == PlyHeader::Format::none)

@@ -89,15 +89,15 @@ TEST(Ply, HeadersAreReadLineByLine) {
         << comment;
   }
   EXPECT_EQ(area(kText + kVertices + kFaces + "element 99999999edges 0\nproperty int a\n"), 1);
-  const char* nonsense = "this line of the header makes no sense";
+  const char* nonsense = "cannot understand this line of the header";
   EXPECT_THAT(error("ply\n" + kVertices + kFaces), HasSubstr("a.ply: its header states no format"));
   EXPECT_THAT(error(kText + kVertices + "format ascii 1.0\n" + kFaces), HasSubstr(nonsense));
   EXPECT_THAT(error(kText + "property float x\n" + kVertices + kFaces), HasSubstr(nonsense));
   EXPECT_THAT(error(kText + kVertices + "property string name\n" + kFaces), HasSubstr(nonsense));
   EXPECT_THAT(error(kText + kVertices + kVertices + kFaces),
-              HasSubstr("line 7: this line of the header makes no sense"));
+              HasSubstr("line 7: cannot understand this line of the header"));
   EXPECT_THAT(error(kText + kVertices + kFaces + "element edge 4000000000\n"),
-              HasSubstr("a.ply: there are 4000000000 of the element edge, and no properties"));
+              HasSubstr("a.ply: 4000000000 entries of the element edge have no properties"));
 }
 
 // Assimp would read their numbers as vertices.

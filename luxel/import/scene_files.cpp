@@ -21,7 +21,7 @@ bool is_allowed(const SceneFiles& files, const fs::path& file) {
 Result<fs::path> find_named_file(const SceneFiles& files, std::string_view stated,
                                  std::string_view what) {
   if (!files.folder)
-    return fail(ErrorCode::io, "{} is {}, but a scene in memory can name no file", what,
+    return fail(ErrorCode::io, "{} is {}, but a scene in memory cannot name files", what,
                 short_message(std::string(stated)));
   std::string slashed(stated);
   std::ranges::replace(slashed, '\\', '/');

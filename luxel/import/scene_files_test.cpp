@@ -158,7 +158,7 @@ TEST(SceneFiles, ASceneInMemoryNamesNone) {
   ReadingMemory memory(0);
   const auto read = read_named_file(none, "/etc/hostname", "box.lxr: a buffer", memory);
   ASSERT_FALSE(read);
-  EXPECT_THAT(read.error().message, HasSubstr("a scene in memory can name no file"));
+  EXPECT_THAT(read.error().message, HasSubstr("a scene in memory cannot name files"));
 }
 
 }  // namespace

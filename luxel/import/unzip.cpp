@@ -87,7 +87,7 @@ std::vector<std::byte> inflate_all(std::span<const std::byte> packed) {
 Result<std::vector<PackedFile>> unzip(const SourceFile& source) {
   const Bytes file(source.bytes);
   const auto end = find_end_record(file);
-  if (!end) return fail(ErrorCode::bad_input, "{}: it is no zip archive", source.name);
+  if (!end) return fail(ErrorCode::bad_input, "{}: it is not a zip archive", source.name);
   size_t at = number_at(file, *end + 16, 4);
   std::vector<PackedFile> files;
   for (uint32_t count = number_at(file, *end + 10, 2); count > 0; --count) {

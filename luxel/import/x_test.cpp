@@ -192,9 +192,9 @@ INSTANTIATE_TEST_SUITE_P(
         XDamage{"2.0;1.0;0.0;,", "2.0;1e39;0.0;,", "'1e39' is not a finite number"},
         XDamage{"0.5;0.6;0.7", "0.5;inf;0.7", "'inf' is not a finite number"},
         XDamage{"\"pics\\\\paint.png\"", "paint.png",
-                "'paint.png' stands where the name of a picture in quotes should"},
+                "'paint.png' stands in place of a picture's name in quotes"},
         XDamage{"4;0,3,2,1;;", "0;;", "a face has no corner"},
-        XDamage{"square {", "square", "stands where '{' should"}));
+        XDamage{"square {", "square", "stands in place of '{'"}));
 
 // Assimp would take a lone ; for an object's name and step over what comes next, the end of the
 // mesh included, and 0,1 for a tenth.

@@ -143,7 +143,7 @@ Result<std::string> enter(Walk& walk) {
     name = plain_name(word);
     LUXEL_TRY(word, next_word(walk));
   }
-  if (word != "{") return walk.error("'{}' stands where '{{' should", word);
+  if (word != "{") return walk.error("'{}' stands in place of '{{'", word);
   return name;
 }
 
@@ -231,7 +231,7 @@ Status copy_material(Walk& walk) {
     LUXEL_TRY_STATUS(enter(walk));
     LUXEL_TRY(const std::string_view file, next_word(walk));
     if (file.size() < 2 || !file.starts_with('"') || !file.ends_with('"'))
-      return walk.error("'{}' stands where the name of a picture in quotes should", file);
+      return walk.error("'{}' stands in place of a picture's name in quotes", file);
     walk.write("TextureFilename {{ {}; }}\n", file);
     LUXEL_TRY_STATUS(skip_to_end(walk));
   }
@@ -328,7 +328,7 @@ Status copy_objects(Walk& walk) {
     } else if (word == "Frame") {
       LUXEL_TRY(const std::string name, enter(walk));
       walk.write("Frame {} {{\n", name);
-      if (++depth > kDeepest) return walk.error("more than {} frames lie in each other", kDeepest);
+      if (++depth > kDeepest) return walk.error("more than {} frames are nested", kDeepest);
     } else {
       const bool is_top = depth == 0;
       LUXEL_TRY_STATUS(word == "Mesh"                              ? copy_mesh(walk)

@@ -121,10 +121,9 @@ Error overflow_at(const Scene& scene, Vec3 place) {
   consider(kPiDouble * around, [&] {
     return fmt::format("the surroundings, whose radiance goes up to {:g}: lower it", around);
   });
-  return {ErrorCode::bad_input,
-          fmt::format("the light at ({:.6g}, {:.6g}, {:.6g}) is above {:g}, which is too bright to "
-                      "be held; most of it can come from {}",
-                      place.x, place.y, place.z, kMostIrradiance, who)};
+  return {ErrorCode::bad_input, fmt::format("the light at ({:.6g}, {:.6g}, {:.6g}) is above {:g}, "
+                                            "too bright to store; most of it can come from {}",
+                                            place.x, place.y, place.z, kMostIrradiance, who)};
 }
 
 Status check_held(const Scene& scene, std::span<const Rgb> light,

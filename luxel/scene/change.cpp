@@ -163,7 +163,7 @@ std::string beyond_material(const SceneState::Material& before, const SceneState
     return name + (now.shape & kDoubleSided ? " is double-sided now" : " is one-sided now");
   if (flipped & kScatters)
     return name + (now.shape & kScatters ? " scatters light through now"
-                                         : " scatters no light through any more");
+                                         : " no longer scatters light through");
   return {};
 }
 
@@ -221,7 +221,7 @@ std::vector<std::string> sentences(const SceneState& now, const SceneChange& cha
   for (const uint32_t i : change.moved)
     out.push_back(called("instance", now.instances[i].name, i) + " moved");
   for (const uint32_t i : change.reshaped)
-    out.push_back(material(i) + " lets light through otherwise");
+    out.push_back(material(i) + " transmits light differently");
   for (const uint32_t i : change.recoloured) out.push_back(material(i) + " has another colour");
   for (size_t i = 0; i < change.light_scale.size(); ++i)
     if (change.light_scale[i] != kAsItWas)

@@ -139,7 +139,7 @@ TEST(SceneChange, SaysWhatCannotBeFollowedUp) {
   EXPECT_EQ(beyond([](Scene& s) { s.materials[paint].diffuse_transmission = 0.1f; }),
             "material 'paint' scatters light through now");
   EXPECT_EQ(beyond([](Scene& s) { s.materials[leaf].diffuse_transmission = 0; }),
-            "material 'leaf' scatters no light through any more");
+            "material 'leaf' no longer scatters light through");
   const SceneChange change = changed_by([](Scene& s) { s.instances[4].name = "", s.lights = {}; });
   EXPECT_TRUE(change.any());
   EXPECT_EQ(in_words(state_of(some_scene()), change), "3 lights there, 0 here");
@@ -333,7 +333,7 @@ TEST(SceneChange, IsSaidInWords) {
   now.materials[glass].alpha = 0.9f, now.materials[paint].base_color = {};
   now.background = {1, 1, 1};
   EXPECT_EQ(words(),
-            "instance 'paint box' moved, material 'glass' lets light through otherwise, material "
+            "instance 'paint box' moved, material 'glass' transmits light differently, material "
             "'paint' has another colour, light 'desk' shines otherwise and 2 more");
 }
 

@@ -251,8 +251,8 @@ void warn_of_width(const Scene& scene, Report& report) {
       if (std::sqrt(area_m2(world_triangle(scene, i, t))) < step_m) ++small;
   if (2 * small <= all) return;
   report.warn(
-      "{} of {} triangles are smaller than {:.3g} m, by which rays start off surfaces in a scene "
-      "that is {:.3g} m wide: light will go past them; {} lies farthest out",
+      "{} of {} triangles are smaller than {:.3g} m, the distance at which rays start off surfaces "
+      "in a scene {:.3g} m wide: light will miss them; {} lies farthest out",
       small, all, step_m, width_m, farthest_vertex(scene));
 }
 

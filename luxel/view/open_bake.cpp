@@ -50,13 +50,11 @@ std::string light_unit_of(const scene::Scene& scene, const pipeline::BakeSetting
 Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder, ignored))
-    return fail(ErrorCode::bad_input, "there is neither a scene nor a bake of the name {}",
-                folder.string());
+    return fail(ErrorCode::bad_input, "there is no scene and no bake named {}", folder.string());
   if (!std::filesystem::exists(folder / "baked.glb", ignored))
-    return fail(
-        ErrorCode::bad_input,
-        "{} is no bake: there is no baked.glb in it; `luxel bake SCENE -o FOLDER` makes one",
-        folder.string());
+    return fail(ErrorCode::bad_input,
+                "{} is not a bake: it has no baked.glb; `luxel bake SCENE -o FOLDER` makes one",
+                folder.string());
   LUXEL_TRY_STATUS(pipeline::check_has_colors(folder));
   OpenedBake out;
   out.folder = folder;

@@ -103,13 +103,13 @@ void warn_of_rough_pairs(const std::set<Pair>& rough, const AnalyticParams& para
   for (const auto& [i, j] : rough) {
     if (matrix.warnings.size() == kMostWarnings) {
       matrix.warnings.push_back(
-          fmt::format("{} more pairs of surfaces have a larger error than --tolerance {} asks for",
+          fmt::format("{} more pairs of surfaces have a larger error than --tolerance {} allows",
                       rough.size() - kMostWarnings, params.tolerance));
       return;
     }
     matrix.warnings.push_back(fmt::format(
         "the factor between '{}' and '{}' is {:.6g} with an estimated error of {:.1e}, more than "
-        "--tolerance {} asks for: what stands between them is too intricate for {} pieces",
+        "--tolerance {} allows: the blockers between them are too intricate for {} pieces",
         matrix.names[i], matrix.names[j], matrix.at(i, j), matrix.error[i * matrix.size() + j],
         params.tolerance, params.max_cells));
   }

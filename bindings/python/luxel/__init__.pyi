@@ -56,9 +56,9 @@ def load(
     path: Path,
     *,
     # begin: load
-    smooth_normals: float | None = ...,  # Meshes without normals: smooth across edges that bend by at most this angle, 0: flat; by default 30 for OBJ and PLY, else flat (0 to 180)
-    search_path: Values | None = ...,  # A folder besides the scene's own in which pictures and buffers may lie that the scene names; may be given for several
-    trust_paths: bool | None = ...,  # Read files that the scene names wherever they lie, outside of its folder too
+    smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 30 for OBJ and PLY, else flat (0 to 180)
+    search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
+    trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
     # end: load
 ) -> Scene: ...
 
@@ -113,60 +113,60 @@ def bake(
     *,
     progress: Progress | None = ...,
     # begin: bake
-    solver: str | None = ...,  # How light is computed; gather
-    settings: Value | None = ...,  # Take scene and settings from the bake.json of an earlier bake
-    resolution: float | None = ...,  # Side of a lightmap in texels; without it, as fine as the scene deserves, up to some 2 million texels (1 to 16384)
-    texels_per_metre: float | None = ...,  # Density; the side becomes the smallest power of two that holds the scene
+    solver: str | None = ...,  # Solver that computes the light; gather
+    settings: Value | None = ...,  # Read scene and settings from the bake.json of an earlier bake
+    resolution: float | None = ...,  # Lightmap side in texels; default: as fine as the scene needs, up to about 2 million texels (1 to 16384)
+    texels_per_metre: float | None = ...,  # Texel density; the lightmap side becomes the smallest power of two that fits the scene
     pages: Value | None = ...,  # Number of lightmaps; auto: as many as the density needs; mesh: one per mesh; 1
-    uv: Value | None = ...,  # keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if it can hold the light; auto
-    leak_repair: bool | None = ...,  # False: Do not cut charts under thin walls, nor move samples out of solids; True
-    quality: Value | None = ...,  # How good the light is: sets --samples, --direct-samples, --supersample and --denoise where they are not given; good if nothing else is said
-    samples: float | None = ...,  # Indirect rays per texel; gather has --quality's where none is given (1 to 65535); 256
-    direct_samples: float | None = ...,  # Shadow rays per texel towards area lights; auto: as --samples asks for, so that direct light is as well known as the rest (1 to 65535); 64
-    supersample: float | None = ...,  # Points per texel across which direct light varies; 1: none; auto: as --samples asks for (1 to 1024); 16
-    bounces: Value | None = ...,  # Reflections to count, or inf; inf
-    max_error: float | None = ...,  # Add rays until the light errs by less than this part of itself, e.g. 0.02 (0.0001 to 1)
-    error_measure: Value | None = ...,  # What --max-error says: p95: 95 % of texels err by less than this part of their own light; rms: the root mean square error of all texels, over their mean light; p95
-    time_budget: float | None = ...,  # gather: the lowest error within about this many seconds in total; with --max-error until either is reached. hierarchical: less refinement where that helps. All but gather end with code 3 when it is over
-    seed: float | None = ...,  # Seed of all random numbers (>= 0); 1
-    directional: Value | None = ...,  # Also store how irradiance changes with the normal: dominant or sh1
+    uv: Value | None = ...,  # Lightmap layout: keep: the file's TEXCOORD_1; unwrap: a new layout; auto: keep if it can hold the light, else unwrap; auto
+    leak_repair: bool | None = ...,  # False: Do not cut charts under thin walls or move samples out of solids; True
+    quality: Value | None = ...,  # Preset for --samples, --direct-samples, --supersample and --denoise where you do not set them; default: good
+    samples: float | None = ...,  # Indirect rays per texel; for gather, the default comes from --quality (1 to 65535); 256
+    direct_samples: float | None = ...,  # Shadow rays per texel to area lights; auto: derived from --samples, so that direct light is as accurate as indirect light (1 to 65535); 64
+    supersample: float | None = ...,  # Points in each texel across which direct light varies; 1: no supersampling; auto: derived from --samples (1 to 1024); 16
+    bounces: Value | None = ...,  # Number of bounces, or inf; inf
+    max_error: float | None = ...,  # Add rays until the relative error of the light is below this, e.g. 0.02 (0.0001 to 1)
+    error_measure: Value | None = ...,  # What --max-error limits: p95: the relative error of 95 % of the texels; rms: the root mean square error of all texels, over their mean light; p95
+    time_budget: float | None = ...,  # Time for the whole bake. gather: reach the lowest error in about this many seconds, or stop at --max-error; hierarchical: refine less if time is short; all but gather exit with code 3 when time runs out
+    seed: float | None = ...,  # Random seed (>= 0); 1
+    directional: Value | None = ...,  # Also write how irradiance changes with the normal, for normal maps: dominant (a direction) or sh1 (spherical harmonics)
     probes: float | None = ...,  # Also write light probes on a grid of this spacing in metres
-    layers: Value | None = ...,  # Also write a lightmap of each light (per-light), or of each group of lights whose names differ only by a number at the end (groups)
-    light: Value | None = ...,  # The light of the lightmap: all; direct; indirect, reflected at least once; or no-punctual, all but what comes straight from point, spot and directional lights, for engines that add those themselves; all
-    shadow_mask: Value | None = ...,  # Also write shadow-mask.png and .exr: how much of up to four point, spot or directional lights each texel sees; auto: the first four
-    ambient_occlusion: Value | None = ...,  # Also write ambient-occlusion.png and .exr: the share of directions in which nothing is nearer than this many metres, or inf
-    denoise: bool | None = ...,  # Remove the noise of few samples; edges of shadows stay
+    layers: Value | None = ...,  # Also write a lightmap for each light (per-light), or for each group of lights whose names differ only in a trailing number (groups)
+    light: Value | None = ...,  # Light in the lightmap: all; direct; indirect: light that has bounced at least once; no-punctual: all but the direct light of point, spot and directional lights, for engines that add it themselves; all
+    shadow_mask: Value | None = ...,  # Also write shadow-mask.png and .exr: how much each texel sees of up to four point, spot or directional lights; auto: the first four
+    ambient_occlusion: Value | None = ...,  # Also write ambient-occlusion.png and .exr: the share of directions that nothing blocks within this distance in metres, or inf
+    denoise: bool | None = ...,  # Denoise the light, and keep shadow edges
     stitch: bool | None = ...,  # False: Do not blend charts along seams; True
-    attach: Value | None = ...,  # How baked.glb shows the light: lightmap needs a viewer that knows MOZ_lightmap; combined (unlit colour times light) and emissive (emission) show in any; lightmap
-    vertex_colors: bool | None = ...,  # baked.glb gets light per vertex in COLOR_0 instead of the lightmap
+    attach: Value | None = ...,  # How baked.glb carries the light: lightmap (for viewers that support MOZ_lightmap), or, for any viewer, combined (unlit colour times light) or emissive (emission); lightmap
+    vertex_colors: bool | None = ...,  # Store light per vertex in COLOR_0 of baked.glb instead of the lightmap
     texels: bool | None = ...,  # Also write texels.png: how each texel was treated (luxel render --technique texels)
     error_map: bool | None = ...,  # Also write error.png: the relative standard error of each texel (luxel render --technique error)
-    formats: Value | None = ...,  # The lightmap as exr (always), hdr, rgbm, rgbe, half and ktx2, with commas between them; exr
-    html: bool | None = ...,  # Also write view.html: the baked scene as one page to walk around in
-    view: Value | None = ...,  # Where the picture is taken from: inside, outside, the front (looking along -Z), the top, or a camera of the scene; by default its first, else inside of lit rooms and outside of all else
-    max_memory: Value | None = ...,  # Memory to stay under, as 900M or 1.5G (default: most of what is free)
-    threads: float | None = ...,  # Threads to use; 0 = all cores (0 to 1024)
-    smooth_normals: float | None = ...,  # Meshes without normals: smooth across edges that bend by at most this angle, 0: flat; by default 30 for OBJ and PLY, else flat (0 to 180)
-    search_path: Values | None = ...,  # A folder besides the scene's own in which pictures and buffers may lie that the scene names; may be given for several
-    trust_paths: bool | None = ...,  # Read files that the scene names wherever they lie, outside of its folder too
-    background: Value | None = ...,  # Radiance of the surroundings as r,g,b
-    sun: Value | None = ...,  # A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it
-    environment: Value | None = ...,  # Equirectangular .hdr or .exr of the surroundings, turned and scaled
-    sky: Value | None = ...,  # A clear sky with its sun in lux, by the sun's bearing and elevation or by date, time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity 1 to 10 (2)
-    ies: Values | None = ...,  # The distribution of a point or spot light from an IES file; may be given for several
-    elements: Value | None = ...,  # Light per vertex or per triangle; vertex
-    hemicube: float | None = ...,  # Pixels along an edge of the hemicube's top, even (2 to 2048); 64
-    element_size: float | None = ...,  # Size of the first triangles in metres (default: by --max-elements)
-    max_elements: float | None = ...,  # Vertices or triangles at most (default: 20000, more for large scenes) (1 to 67108864)
-    smooth: bool | None = ...,  # Interpolate light that is per triangle
-    patches: float | None = ...,  # Approximate number of patches that exchange light (1 to 1048576); 8192
-    rays: float | None = ...,  # Rays per patch that estimate its form factors (1 to 65535); 2048
-    eps: float | None = ...,  # How much the light over a link may be off, in W/m^2 on an element of mean size (default: a hundredth of the mean light)
-    min_area: float | None = ...,  # Elements are not divided below this, in m^2 (default: by the scene)
-    discontinuities: bool | None = ...,  # False: Do not mesh along the edges of shadows; True
-    max_leaf_lines: float | None = ...,  # Edges of shadows through an element, at most (0 to 1000); 10
-    min_weight: float | None = ...,  # Edges over which light changes by less are left out, in W/m^2 per m; with --ranking nearness in W/m^2 (default: by the light there is)
-    ranking: Value | None = ...,  # Which edges of shadows come first: slope, by how much light changes per metre; nearness, by how near to the surface what throws them is; slope
+    formats: Value | None = ...,  # Lightmap formats, separated by commas: exr (always written), hdr, rgbm, rgbe, half, ktx2; exr
+    html: bool | None = ...,  # Also write view.html: a single page to walk through the baked scene
+    view: Value | None = ...,  # Viewpoint of the picture: interior, exterior, front (looking along -Z), top, or a camera of the scene; default: its first camera, else interior for lit rooms and exterior for other scenes
+    max_memory: Value | None = ...,  # Memory limit, e.g. 900M or 1.5G (default: most of the free memory)
+    threads: float | None = ...,  # Number of threads; 0: all cores (0 to 1024)
+    smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 30 for OBJ and PLY, else flat (0 to 180)
+    search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
+    trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
+    background: Value | None = ...,  # Background radiance as r,g,b
+    sun: Value | None = ...,  # Add a sun: azimuth (0 = -Z, 90 = +X), elevation, and illuminance on a surface that faces it
+    environment: Value | None = ...,  # Environment map: an equirectangular .hdr or .exr, rotated and scaled
+    sky: Value | None = ...,  # Add a clear sky with its sun, in lux, by the sun's azimuth and elevation or by date, time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity: 1 to 10 (default: 2)
+    ies: Values | None = ...,  # Give a point or spot light the distribution in an IES file; repeatable
+    elements: Value | None = ...,  # Compute light per vertex or per triangle; vertex
+    hemicube: float | None = ...,  # Pixels along an edge of the hemicube's top; an even number (2 to 2048); 64
+    element_size: float | None = ...,  # Size of the initial triangles in metres (default: from --max-elements)
+    max_elements: float | None = ...,  # Largest number of vertices or triangles (default: 20000, more for large scenes) (1 to 67108864)
+    smooth: bool | None = ...,  # Interpolate light computed per triangle
+    patches: float | None = ...,  # Approximate number of patches (1 to 1048576); 8192
+    rays: float | None = ...,  # Rays per patch to estimate its form factors (1 to 65535); 2048
+    eps: float | None = ...,  # Error limit of a link, in W/m^2 on an element of mean size (default: 1 % of the mean light)
+    min_area: float | None = ...,  # Do not subdivide elements below this area in m^2 (default: from the scene)
+    discontinuities: bool | None = ...,  # False: Do not mesh along shadow edges; True
+    max_leaf_lines: float | None = ...,  # Largest number of shadow edges through an element (0 to 1000); 10
+    min_weight: float | None = ...,  # Leave out shadow edges across which light changes by less than this, in W/m^2 per m, or in W/m^2 with --ranking nearness (default: from the light in the scene)
+    ranking: Value | None = ...,  # How to rank shadow edges: slope: by how much light changes per metre; nearness: by how close the blocker is to the surface; slope
     # end: bake
 ) -> Bake: ...
 
@@ -183,25 +183,25 @@ class Relighter:
         *,
         progress: Progress | None = ...,
         # begin: relighter
-        threads: int | None = ...,  # Threads to use; 0 = all cores; 0
-        target: Value | None = ...,  # Where light is wanted: texels of a lightmap, vertices, none; texels
-        resolution: float | None = ...,  # Side of the lightmap in texels (1 to 16384); 256
-        texels_per_metre: float | None = ...,  # Density; the side becomes the smallest power of two that holds the scene
-        uv: Value | None = ...,  # keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if it can hold the light; auto
-        patches: float | None = ...,  # Approximate number of patches that exchange light (1 to 1048576); 8192
-        rays: float | None = ...,  # Rays per patch that estimate its form factors (1 to 65535); 8192
-        codec: Value | None = ...,  # How it is kept: hierarchical, lowrank, bc1, dense32, dense16; hierarchical
-        max_error: float | None = ...,  # What the codec may lose of indirect light, root mean square; 0.01
-        bounces: Value | None = ...,  # Reflections to count, or inf; inf
-        max_memory: Value | None = ...,  # Memory to stay under, as 900M or 1.5G (default: most of what is free)
-        seed: float | None = ...,  # Seed of all random numbers (>= 0); 1
-        smooth_normals: float | None = ...,  # Meshes without normals: smooth across edges that bend by at most this angle, 0: flat; by default 30 for OBJ and PLY, else flat (0 to 180)
-        search_path: Values | None = ...,  # A folder besides the scene's own in which pictures and buffers may lie that the scene names; may be given for several
-        trust_paths: bool | None = ...,  # Read files that the scene names wherever they lie, outside of its folder too
-        background: Value | None = ...,  # Radiance of the surroundings as r,g,b
-        sun: Value | None = ...,  # A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it
-        environment: Value | None = ...,  # Equirectangular .hdr or .exr of the surroundings, turned and scaled
-        sky: Value | None = ...,  # A clear sky with its sun in lux, by the sun's bearing and elevation or by date, time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity 1 to 10 (2)
+        threads: int | None = ...,  # Number of threads; 0: all cores; 0
+        target: Value | None = ...,  # Where to compute light: texels of a lightmap, vertices, or none; texels
+        resolution: float | None = ...,  # Lightmap side in texels (1 to 16384); 256
+        texels_per_metre: float | None = ...,  # Texel density; the lightmap side becomes the smallest power of two that fits the scene
+        uv: Value | None = ...,  # Lightmap layout: keep: the file's TEXCOORD_1; unwrap: a new layout; auto: keep if it can hold the light, else unwrap; auto
+        patches: float | None = ...,  # Approximate number of patches (1 to 1048576); 8192
+        rays: float | None = ...,  # Rays per patch to estimate its form factors (1 to 65535); 8192
+        codec: Value | None = ...,  # Codec that compresses the matrix: hierarchical, lowrank, bc1, dense32, dense16; hierarchical
+        max_error: float | None = ...,  # Largest relative RMS error of indirect light due to the codec; 0.01
+        bounces: Value | None = ...,  # Number of bounces, or inf; inf
+        max_memory: Value | None = ...,  # Memory limit, e.g. 900M or 1.5G (default: most of the free memory)
+        seed: float | None = ...,  # Random seed (>= 0); 1
+        smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 30 for OBJ and PLY, else flat (0 to 180)
+        search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
+        trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
+        background: Value | None = ...,  # Background radiance as r,g,b
+        sun: Value | None = ...,  # Add a sun: azimuth (0 = -Z, 90 = +X), elevation, and illuminance on a surface that faces it
+        environment: Value | None = ...,  # Environment map: an equirectangular .hdr or .exr, rotated and scaled
+        sky: Value | None = ...,  # Add a clear sky with its sun, in lux, by the sun's azimuth and elevation or by date, time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity: 1 to 10 (default: 2)
         # end: relighter
     ) -> None: ...
     def update(self, lights: Scene, *, emission: npt.ArrayLike | None = ...) -> Relit: ...

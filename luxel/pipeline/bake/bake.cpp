@@ -61,8 +61,9 @@ Result<FinishedFiles> finished_files(const BakeSettings& settings, const Bake& b
 Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progress,
                                  const BakeDevice* device) {
   if (device)
-    return fail(ErrorCode::bad_setting, "--part {}/{} is the processor's work; leave --device out",
-                settings.part.number, settings.part.of);
+    return fail(ErrorCode::bad_setting,
+                "--part {}/{} runs on the processor only; leave --device out", settings.part.number,
+                settings.part.of);
   const std::filesystem::path file = parts_file(settings);
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.make());

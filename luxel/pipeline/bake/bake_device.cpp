@@ -26,9 +26,9 @@ Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepe
   if (!keepers.device) return keepers;
   const std::string option = only_on_the_processor(settings);
   if (option.empty()) return keepers;
-  const std::string why = option + " works on the processor alone";
+  const std::string why = option + " runs on the processor only";
   if (!keepers.device->is_optional)
-    return fail(ErrorCode::bad_setting, "{}; leave it or --device out", why);
+    return fail(ErrorCode::bad_setting, "{}; leave out that or --device", why);
   warnings.push_back(warning_without(*keepers.device, why));
   Keepers out = keepers;
   out.device = nullptr;

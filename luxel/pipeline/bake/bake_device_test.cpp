@@ -81,7 +81,7 @@ TEST(BakeDevice, ThatIsOptionalLeavesTheBakeToTheProcessor) {
     EXPECT_EQ(light->light.irradiance, expected->light.irradiance);
     EXPECT_EQ(light->light.device, "");
     EXPECT_THAT(light->warnings,
-                Contains("done by the processor, not by a card: the cable is out"));
+                Contains("computed on the processor, not on a card: the cable is out"));
   }
 }
 
@@ -124,7 +124,7 @@ TEST(BakeDevice, ThatFailsLeavesHemicubesToTheProcessor) {
   ASSERT_TRUE(light && expected);
   EXPECT_EQ(light->light.irradiance, expected->light.irradiance);
   EXPECT_EQ(light->light.device, "");
-  EXPECT_THAT(light->warnings, Contains(HasSubstr("not by a card: the cable is out")));
+  EXPECT_THAT(light->warnings, Contains(HasSubstr("not on a card: the cable is out")));
 }
 
 TEST(BakeDevice, IsNotAskedForWhatOnlyTheProcessorKnows) {

@@ -56,8 +56,8 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
   const Solver& solver = *find_solver(settings.solver);
   if (!solver.can.scatters && scene::scatters_light(input.scene))
     bake.warnings.push_back(fmt::format(
-        "light that is scattered through surfaces (KHR_materials_diffuse_transmission) is left out "
-        "by --solver {}: they are too dark; gather and reference have it",
+        "--solver {} leaves out the light that scatters through surfaces "
+        "(KHR_materials_diffuse_transmission), so they are too dark; use gather or reference",
         settings.solver));
   LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
   LUXEL_TRY_STATUS(check_held(input, bake.light));
@@ -78,8 +78,8 @@ std::optional<std::string> ignored_density(const scene::Scene& scene, const atla
   const auto first = std::ranges::find_if(scene.instances, asks);
   if (!atlas.kept || first == scene.instances.end()) return std::nullopt;
   return fmt::format(
-      "'{}' asks for another density of texels (extras.luxel), but the file's own TEXCOORD_1 is "
-      "kept; give --uv unwrap for a layout that follows it",
+      "'{}' asks for another texel density (extras.luxel), but the file's TEXCOORD_1 is kept; give "
+      "--uv unwrap for a layout with this density",
       first->name);
 }
 
@@ -248,8 +248,8 @@ tl::unexpected<Error> out_of_time(const BakeSettings& settings, const Progress& 
   const std::string own =
       solver.options.empty() ? "" : " or the values of " + flags_of(solver.options);
   return fail(ErrorCode::out_of_time,
-              "--time-budget {:g} was over in the stage '{}', and --solver {} has no result before "
-              "its end; give more time, or change --resolution{}",
+              "--time-budget {:g} ran out in the stage '{}' before --solver {} had a result; give "
+              "more time, or change --resolution{}",
               settings.time_budget_s, progress.snapshot().stage, settings.solver, own);
 }
 
@@ -332,7 +332,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
   const ThreadLimit threads(settings.threads);
   const Solver& solver = *find_solver(settings.solver);
   if (!solver.plan)
-    return fail(ErrorCode::bad_setting, "--plan: --solver {} cannot say what it will take",
+    return fail(ErrorCode::bad_setting, "--plan: --solver {} cannot estimate its time",
                 settings.solver);
   Bake bake;
   LUXEL_TRY(bake.scene, load_scene(settings, bake.warnings, progress));

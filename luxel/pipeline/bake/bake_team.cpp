@@ -22,13 +22,13 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
   if (!team) return {};
   const auto refuse = [&](const std::string& option) {
     return fail(ErrorCode::bad_setting,
-                "{} is for one process, and {} work together; leave it or mpirun out", option,
+                "{} needs a single process, but {} work together; leave out that or mpirun", option,
                 team->size());
   };
   if (!find_solver(settings.solver)->can.teams)
     return fail(ErrorCode::bad_setting,
-                "--solver {} works in one process, and {} work together; leave mpirun out, "
-                "or choose one that shares its work: {}",
+                "--solver {} needs a single process, but {} work together; leave mpirun out, or "
+                "choose a solver that shares its work: {}",
                 settings.solver, team->size(), solvers_with_teams());
   if (!settings.part.is_all())
     return refuse(fmt::format("--part {}/{}", settings.part.number, settings.part.of));
@@ -49,8 +49,8 @@ Status check_same_settings(Team* team, const nlohmann::json& identity, Progress&
   for (size_t rank = 1; rank < all.size(); ++rank)
     if (all[rank] != all[0])
       return fail(ErrorCode::bad_setting,
-                  "process {} (there) was not given the settings of process 0 (here): {}; start "
-                  "all with the same command",
+                  "process {} (there) has other settings than process 0 (here): {}; start all with "
+                  "the same command",
                   rank, difference(read(rank), read(0)));
   return {};
 }

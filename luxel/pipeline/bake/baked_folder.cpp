@@ -48,9 +48,8 @@ Status check_has_colors(const std::filesystem::path& folder) {
   if (attach == export_::Attach::lightmap) return {};
   const bool combined = attach == export_::Attach::combined;
   return fail(ErrorCode::bad_input,
-              "{} was baked with --attach {}: it has pictures of light instead of colours that a "
-              "lightmap could light; bake with --attach lightmap, or draw the file itself with "
-              "--technique {}",
+              "{} was baked with --attach {}: its textures hold light instead of colours; bake "
+              "with --attach lightmap, or draw the file itself with --technique {}",
               glb.string(), combined ? "combined" : "emissive", combined ? "c" : "path");
 }
 
@@ -61,10 +60,10 @@ Status check_has_all_light(const std::filesystem::path& folder) {
   // Without a bake.json that can be read nothing is known; outside_light_of_bake() says so.
   if (!std::filesystem::exists(json, ignored) || !read_settings(json, baked)) return {};
   if (baked.light == LightPart::all) return {};
-  return fail(ErrorCode::bad_input,
-              "{} was baked with --light {}: its lightmap lacks a part of the light that surfaces "
-              "send on; bake with --light all",
-              folder.string(), name_of(baked.light));
+  return fail(
+      ErrorCode::bad_input,
+      "{} was baked with --light {}: its lightmap lacks a part of the light; bake with --light all",
+      folder.string(), name_of(baked.light));
 }
 
 OutsideLight outside_light_of_bake(const std::filesystem::path& folder, const OutsideLight& given,
@@ -83,7 +82,7 @@ OutsideLight outside_light_of_bake(const std::filesystem::path& folder, const Ou
   const auto is_gone = [&](const std::filesystem::path& file) {
     if (std::filesystem::exists(file, ignored)) return false;
     warnings.push_back(
-        fmt::format("{} of the bake is not there any more and is left out", file.string()));
+        fmt::format("{} of the bake no longer exists and is left out", file.string()));
     return true;
   };
   if (out.environment && is_gone(out.environment->file)) out.environment.reset();

@@ -78,8 +78,8 @@ Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Sce
     return scene.cameras.empty() ? display::fit_camera(scene, tracer, choice.aspect)
                                  : scene.cameras.front();
   if (const scene::Camera* camera = find_camera(scene, name)) return *camera;
-  return fail(ErrorCode::bad_setting, "{} {} is not in {}; there is: {}", choice.asked, name, file,
-              camera_names(scene));
+  return fail(ErrorCode::bad_setting, "{} {} is not in {}; its cameras: {}", choice.asked, name,
+              file, camera_names(scene));
 }
 
 Status check_picture(const scene::Scene& scene, const trace::RayTracer& tracer,

@@ -51,9 +51,9 @@ TEST(ChooseCamera, TakesTheScenesByName) {
   EXPECT_EQ(room.camera(choice)->fov_y_rad, 1);
   choice.name = "window";
   EXPECT_THAT(room.camera(choice).error().message,
-              HasSubstr("--camera window is not in box.glb; there is: published, door"));
+              HasSubstr("--camera window is not in box.glb; its cameras: published, door"));
   room.scene.cameras.clear();
-  EXPECT_THAT(room.camera(choice).error().message, HasSubstr("there is: none"));
+  EXPECT_THAT(room.camera(choice).error().message, HasSubstr("its cameras: none"));
   choice.name.clear();
   EXPECT_TRUE(room.camera(choice));  // fitted
   choice.eye = choice.look_at;

@@ -87,10 +87,10 @@ Result<std::vector<uint32_t>> masked_lights(const BakeSettings& settings,
     uint32_t i = 0;
     while (i < scene.lights.size() && mask_name(scene, i) != name) ++i;
     if (i == scene.lights.size())
-      return fail(ErrorCode::bad_setting,
-                  "--shadow-mask {}: there is no point, spot or directional light '{}'; there is: "
-                  "{}",
-                  settings.shadow_mask, name, all_names(scene));
+      return fail(
+          ErrorCode::bad_setting,
+          "--shadow-mask {}: there is no point, spot or directional light '{}'; choose from: {}",
+          settings.shadow_mask, name, all_names(scene));
     out.push_back(i);
   }
   return out;

@@ -61,9 +61,10 @@ Status check(const CompareSettings& s) {
   for (const fs::path& path : {s.a, s.b}) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored) && !fs::exists(picture_files(path).front(), ignored))
-      return fail(ErrorCode::bad_input,
-                  "{} is a folder without lightmap.exr; give a picture or what `luxel bake` left",
-                  path.string());
+      return fail(
+          ErrorCode::bad_input,
+          "{} is a folder without lightmap.exr; give a picture or the output folder of a bake",
+          path.string());
   }
   if (s.report && s.report->empty())
     return fail(ErrorCode::bad_setting, "--report names no folder");
@@ -79,7 +80,7 @@ Status check_kinds(const Picture& a, const Picture& b) {
   if (a.hdr() == b.hdr()) return {};
   return fail(ErrorCode::bad_input,
               "{} holds light and {} display values, whose tone mapping is not known; compare two "
-              "of EXR and HDR, or two of PNG and JPEG",
+              "EXR or HDR files, or two PNG or JPEG files",
               a.hdr() ? a.name : b.name, a.hdr() ? b.name : a.name);
 }
 

@@ -65,8 +65,8 @@ Result<uint32_t> surface_named(const viewfactor::Surfaces& surfaces, const char*
   }
   if (surfaces.surfaces.size() > kMostNames)
     names += fmt::format(" and {} more", surfaces.surfaces.size() - kMostNames);
-  return fail(ErrorCode::bad_setting, "{} '{}': there is no such surface; there are: {}", option,
-              name, names);
+  return fail(ErrorCode::bad_setting, "{} '{}': the scene has no such surface; choose from: {}",
+              option, name, names);
 }
 
 viewfactor::SampledParams sampled_params(const FactorSettings& s) {
@@ -124,9 +124,7 @@ Result<viewfactor::Surfaces> read_surfaces(const FactorSettings& s, scene::Scene
   for (const std::string& warning : surfaces.warnings)
     report.warnings.push_back(fmt::format("{}: {}", s.scene.string(), warning));
   if (surfaces.surfaces.empty())
-    return fail(ErrorCode::bad_input,
-                "{}: no surface has an area; there is nothing between which "
-                "light could be exchanged",
+    return fail(ErrorCode::bad_input, "{}: no surface has an area, so there are no view factors",
                 s.scene.string());
   LUXEL_TRY_STATUS(check_memory(s, surfaces.surfaces.size()));
   for (const viewfactor::Surface& surface : surfaces.surfaces)

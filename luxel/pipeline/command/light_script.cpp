@@ -37,7 +37,7 @@ Status only_fields(const Node& node, std::span<const std::string_view> known,
     if (std::find(known.begin(), known.end(), field) == known.end()) {
       std::string names;
       for (const std::string_view k : known) names += (names.empty() ? "" : ", ") + std::string(k);
-      return fail(ErrorCode::bad_input, "{}: '{}' is not known; there is: {}", node.where, field,
+      return fail(ErrorCode::bad_input, "{}: '{}' is not known; choose from: {}", node.where, field,
                   names);
     }
   return {};

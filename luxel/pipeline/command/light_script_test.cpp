@@ -147,7 +147,7 @@ TEST(LightScript, RefusesWhatIsNoScript) {
                   {"{\"frames\": 1e999}", "", "it is not JSON"},
                   {"[1, 2]", " is [1,2]", "it should be an object"},
                   {"3", " is 3", "it should be an object"},
-                  {R"({"lamps": []})", "", "'lamps' is not known; there is: frames, "}});
+                  {R"({"lamps": []})", "", "'lamps' is not known; choose from: frames, "}});
 }
 
 TEST(LightScript, RefusesWrongPictures) {
@@ -178,7 +178,7 @@ TEST(LightScript, RefusesWrongCameras) {
        {R"({"camera": {"eye": [0, 0, 1], "look_at": [0, 0, 0], "fov_deg": 180}})",
         ".camera.fov_deg is 180", "from 1 to 170"},
        {R"({"camera": {"eye": [0, 0, 1], "look_at": [0, 0, 0], "roll": 1}})", ".camera",
-        "'roll' is not known; there is: eye, look_at, fov_deg"}});
+        "'roll' is not known; choose from: eye, look_at, fov_deg"}});
 }
 
 TEST(LightScript, RefusesWrongLights) {
@@ -209,7 +209,7 @@ TEST(LightScript, RefusesWrongLights) {
        {lights(R"({"position": [0, 0, 0], "inner_cone_deg": 46})"), ".lights[0].inner_cone_deg",
         "to 45"},
        {lights(R"({"position": [0, 0, 0], "colour": [1, 1, 1]})"), ".lights[0]",
-        "'colour' is not known; there is: kind, intensity, "}});
+        "'colour' is not known; choose from: kind, intensity, "}});
 }
 
 TEST(LightScript, RefusesWrongTracks) {
@@ -228,7 +228,7 @@ TEST(LightScript, RefusesWrongTracks) {
        {at("[{\"at\": \"now\", \"value\": [0, 0, 0]}]"), where + "[0].at is \"now\"", "a number"},
        {at("[{\"at\": 0, \"value\": [0, 0]}]"), where + "[0].value", "three numbers"},
        {at("[{\"at\": 0, \"value\": [0, 0, 0], \"ease\": 1}]"), where + "[0]",
-        "'ease' is not known; there is: at, value"},
+        "'ease' is not known; choose from: at, value"},
        {at("[{\"at\": 1, \"value\": [0, 0, 0]}, {\"at\": 1, \"value\": [1, 1, 1]}]"),
         where + "[1].at is 1", "later than the key before it"},
        {at("[{\"at\": 1, \"value\": [0, 0, 0]}, {\"at\": 0.5, \"value\": [1, 1, 1]}]"),
@@ -306,7 +306,7 @@ TEST(LightScript, RefusesWrongGlows) {
                   {R"({"emission": [{"material": "lamp", "radiance": [-1, 1, 1]}]})",
                    ".emission[0].radiance", "never negative"},
                   {R"({"emission": [{"material": "lamp", "radiance": [1, 1, 1], "on": 1}]})",
-                   ".emission[0]", "'on' is not known; there is: material, radiance"}});
+                   ".emission[0]", "'on' is not known; choose from: material, radiance"}});
 }
 
 TEST(LightScript, DeepNestingIsAnErrorToo) {

@@ -19,19 +19,20 @@ constexpr int kRaysPerShadowRay = 4;
 Status check_lux(const LuxSettings& s) {
   if (!(s.plane.plane_m > 0 && s.plane.plane_m < 1e4))
     return fail(ErrorCode::bad_setting,
-                "--plane {} is no height above a floor; give metres > 0, as 0.85", s.plane.plane_m);
+                "--plane {} is not a height above a floor; give metres > 0, as 0.85",
+                s.plane.plane_m);
   if (s.plane.spacing_m && !(*s.plane.spacing_m > 0 && std::isfinite(*s.plane.spacing_m)))
-    return fail(ErrorCode::bad_setting, "--spacing {} is no spacing; give metres > 0, as 0.5",
+    return fail(ErrorCode::bad_setting, "--spacing {} is not a spacing; give metres > 0, as 0.5",
                 *s.plane.spacing_m);
   if (!(s.plane.boundary_m >= 0 && std::isfinite(s.plane.boundary_m)))
-    return fail(ErrorCode::bad_setting, "--boundary {} is no width; give metres >= 0, as 0.5",
+    return fail(ErrorCode::bad_setting, "--boundary {} is not a width; give metres >= 0, as 0.5",
                 s.plane.boundary_m);
   if (s.samples < 2 * kEstimates || s.samples > 1 << 20)
     return fail(ErrorCode::bad_setting, "--samples {} is outside {} to {}", s.samples,
                 2 * kEstimates, 1 << 20);
   for (const double floor_m : s.plane.floors)
     if (!std::isfinite(floor_m))
-      return fail(ErrorCode::bad_setting, "--floor {} is no height; give metres", floor_m);
+      return fail(ErrorCode::bad_setting, "--floor {} is not a height; give metres", floor_m);
   for (const std::filesystem::path& output : s.outputs)
     if (output.extension() != ".csv" && output.extension() != ".png")
       return fail(ErrorCode::bad_setting, "-o {}: name it .csv for the points, or .png for plans",

@@ -13,13 +13,14 @@ Status check_method(const ProbeSettings& s) {
       return fail(ErrorCode::bad_setting,
                   "--solver hierarchical does not use --from; leave one of them out");
     if (s.in_air)
-      return fail(ErrorCode::bad_setting,
-                  "--solver hierarchical knows light on surfaces only; leave out --in-air, or it");
+      return fail(
+          ErrorCode::bad_setting,
+          "--solver hierarchical computes light on surfaces only; leave out --in-air or --solver");
     return check_all(hierarchical_options(), s.hierarchical);
   }
   if (!s.output.empty())
     return fail(ErrorCode::bad_setting,
-                "-o {}: what the point sees of each source is drawn by --solver hierarchical; add "
+                "-o {}: only --solver hierarchical draws what the point sees of each source; add "
                 "it, or leave out -o",
                 s.output.string());
   return {};
@@ -27,15 +28,15 @@ Status check_method(const ProbeSettings& s) {
 
 Status check_probe(const ProbeSettings& s) {
   if (!s.output.empty() && s.output.extension() != ".png")
-    return fail(ErrorCode::bad_setting, "-o {}: the picture is to end in .png", s.output.string());
+    return fail(ErrorCode::bad_setting, "-o {}: the name of the picture must end in .png",
+                s.output.string());
   if (s.normal && !(length(*s.normal) > 0))
-    return fail(ErrorCode::bad_setting, "--normal 0,0,0 is no direction");
+    return fail(ErrorCode::bad_setting, "--normal 0,0,0 is not a direction");
   if (!(s.max_error > 0 && s.max_error <= 1))
-    return fail(ErrorCode::bad_setting,
-                "--max-error {} is not above 0 and up to 1; give the part of the light to which it "
-                "is to be "
-                "known, as 0.005",
-                s.max_error);
+    return fail(
+        ErrorCode::bad_setting,
+        "--max-error {} is not above 0 and up to 1; give the relative error to reach, as 0.005",
+        s.max_error);
   if (!(s.time_budget_s > 0 && s.time_budget_s <= 1e7))
     return fail(ErrorCode::bad_setting, "--time-budget {} is not a time; give seconds, as 10",
                 s.time_budget_s);

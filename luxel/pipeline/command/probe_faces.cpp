@@ -66,8 +66,8 @@ Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solut
                      draw_backprojection(solution, at, seen[k].face)});
   }
   if (tiles.empty())
-    return fail(ErrorCode::bad_input, "{}: no surface is seen from there, so there is no picture",
-                s.output.string());
+    return fail(ErrorCode::bad_input,
+                "{}: no surface is visible from there, so there is no picture", s.output.string());
   return write_file_atomically(s.output, image::encode_png(display::contact_sheet(tiles)));
 }
 
@@ -137,8 +137,8 @@ Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
   Result<Probed> out = probe_by_solution(s, progress);
   if (!out && out.error().code == ErrorCode::cancelled && deadline.passed())
     return fail(ErrorCode::out_of_time,
-                "--time-budget {:g} was over in the stage '{}', and --solver hierarchical has no "
-                "result before its end; give more time or a larger --eps, or leave out --solver",
+                "--time-budget {:g} ran out in the stage '{}' before --solver hierarchical had a "
+                "result; give more time or a larger --eps, or leave out --solver",
                 s.time_budget_s, progress.snapshot().stage);
   return out;
 }

@@ -44,7 +44,8 @@ constexpr std::array<std::string_view, 3> kTargets{"texels", "vertices", "none"}
 Result<matrix::CodecKind> codec_of(const std::string& name) {
   for (const CodecName& codec : kCodecs)
     if (codec.name == name) return codec.kind;
-  return fail(ErrorCode::bad_setting, "--codec {} is not known; there is: {}", name, codec_names());
+  return fail(ErrorCode::bad_setting, "--codec {} is not known; choose from: {}", name,
+              codec_names());
 }
 
 /// Whether there was a map, which is an even background now.
@@ -137,11 +138,10 @@ Status fits(const RelightSettings& s) {
   const uint64_t given =
       s.max_memory_bytes > 0 ? s.max_memory_bytes : available_bytes() / 5 * 4 + resident_bytes();
   if (needed <= given) return {};
-  return fail(
-      ErrorCode::out_of_memory,
-      "{} patches with {} rays each need about {} MiB and {} MiB may be used; ask for fewer "
-      "--patches or --rays, or allow more by --max-memory",
-      s.matrix.patches.count, s.matrix.factors.rays_per_patch, needed >> 20, given >> 20);
+  return fail(ErrorCode::out_of_memory,
+              "{} patches with {} rays each need about {} MiB, and {} MiB may be used; lower "
+              "--patches or --rays, or raise --max-memory",
+              s.matrix.patches.count, s.matrix.factors.rays_per_patch, needed >> 20, given >> 20);
 }
 
 nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data, uint64_t bytes,
@@ -182,12 +182,12 @@ Status check_making(const RelightSettings& s) {
   LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
   if (matrix::looks_at_all_pairs(codec) && s.matrix.patches.count > matrix::kMaxDensePatches)
     return fail(ErrorCode::bad_setting,
-                "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
-                "ask for fewer, or for --codec hierarchical",
+                "--patches {} are too many for --codec {}, which handles all pairs of up to {}; "
+                "give fewer, or --codec hierarchical",
                 s.matrix.patches.count, s.codec, matrix::kMaxDensePatches);
   if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
     return fail(ErrorCode::bad_setting,
-                "--target {} is not known; there is: texels, vertices, none", s.target);
+                "--target {} is not known; choose from: texels, vertices, none", s.target);
   if (!s.outside.ies.empty())
     return fail(ErrorCode::bad_setting,
                 "--ies {}={}: .lxr files do not keep light profiles; leave it out",
@@ -206,7 +206,8 @@ Status check_making(const RelightSettings& s) {
 Status check(const RelightSettings& s) {
   LUXEL_TRY_STATUS(check_making(s));
   if (s.output.extension() != ".lxr")
-    return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
+    return fail(ErrorCode::bad_setting, "-o {}: the name of the file must end in .lxr",
+                s.output.string());
   return check_output_file(s.output);
 }
 
@@ -215,8 +216,8 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
   Relightable out;
   if (flatten_sky(scene))
     out.warnings.push_back(
-        "the sky of an .lxr file has one colour: the map counts as an even sky that lights the "
-        "ground as much");
+        "the sky of an .lxr file has one colour: the environment map becomes a uniform sky that "
+        "lights the ground as much");
   LUXEL_TRY_STATUS(fits(s));
   LUXEL_TRY(Wanted wanted, wanted_of(scene, s, out.warnings, progress));
   progress.begin("build ray tracer", 0);
@@ -237,7 +238,7 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
   out.data.scene_glb = std::move(wanted.glb);
   if (out.data.usual_codec_error > s.max_error)
     out.warnings.push_back(
-        fmt::format("the codec loses {:.2g} where {:.2g} was asked for: more --rays would help",
+        fmt::format("the codec loses {:.2g}, more than --max-error {:.2g}; give more --rays",
                     out.data.usual_codec_error, s.max_error));
   return out;
 }

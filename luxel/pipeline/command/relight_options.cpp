@@ -18,14 +18,15 @@ nlohmann::json json_of_text(const std::string& text) { return text; }
 LxrOptions target_options() {
   return {
       LxrRows::text("--target", &RelightSettings::target, any_text, json_of_text,
-                    "Where light is wanted: texels of a lightmap, vertices, none")
+                    "Where to compute light: texels of a lightmap, vertices, or none")
           .unit("texels|vertices|none"),
       LxrRows::number("--resolution", &RelightSettings::resolution, {1, 16384},
-                      "Side of the lightmap in texels")
+                      "Lightmap side in texels")
           .unit("TEXELS"),
-      LxrRows::number("--texels-per-metre", &RelightSettings::texels_per_metre,
-                      {0, kNoLimit, "is not a density; give a number > 0", "", true},
-                      "Density; the side becomes the smallest power of two that holds the scene")
+      LxrRows::number(
+          "--texels-per-metre", &RelightSettings::texels_per_metre,
+          {0, kNoLimit, "is not a density; give a number > 0", "", true},
+          "Texel density; the lightmap side becomes the smallest power of two that fits the scene")
           .unit("DENSITY")
           .never_with({"--resolution"}),
       LxrRows::choice("--uv", &RelightSettings::uv,
@@ -40,24 +41,24 @@ LxrOptions target_options() {
 LxrOptions transport_options() {
   return {
       LxrRows::text("--codec", &RelightSettings::codec, any_text, json_of_text,
-                    "How it is kept: " + codec_names())
+                    "Codec that compresses the matrix: " + codec_names())
           .unit("NAME"),
       LxrRows::number("--max-error", &RelightSettings::max_error,
                       {1e-5, 1, "is outside 0.00001 to 1"},
-                      "What the codec may lose of indirect light, root mean square")
+                      "Largest relative RMS error of indirect light due to the codec")
           .unit("ERROR"),
       LxrRows::text(
           "--bounces", &RelightSettings::bounces, parse_bounces,
           [](int bounces) { return bounces < 0 ? nlohmann::json("inf") : nlohmann::json(bounces); },
-          "Reflections to count, or inf")
+          "Number of bounces, or inf")
           .unit("COUNT"),
       LxrRows::text(
           "--max-memory", &RelightSettings::max_memory_bytes, parse_size,
           [](uint64_t bytes) { return nlohmann::json(bytes); },
-          "Memory to stay under, as 900M or 1.5G (default: most of what is free)")
+          "Memory limit, e.g. 900M or 1.5G (default: most of the free memory)")
           .unit("SIZE")
           .leaves(Changes::nothing),
-      LxrRows::number("--seed", &RelightSettings::seed, {0}, "Seed of all random numbers"),
+      LxrRows::number("--seed", &RelightSettings::seed, {0}, "Random seed"),
   };
 }
 

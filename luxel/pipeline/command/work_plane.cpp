@@ -135,11 +135,10 @@ Result<std::vector<Level>> floors_at(std::span<const double> heights,
       return y >= level.low - kOneFloor_m && y <= level.high + kOneFloor_m;
     });
     if (found == levels.end())
-      return fail(
-          ErrorCode::bad_setting,
-          "--floor {}: no surface faces up there; leave it out, and luxel says which floors "
-          "it finds",
-          y);
+      return fail(ErrorCode::bad_setting,
+                  "--floor {}: no surface faces up at this height; leave it out to see which "
+                  "floors luxel finds",
+                  y);
     out.push_back(*found);
   }
   return out;
@@ -321,8 +320,8 @@ Result<std::vector<Floor>> find_work_planes(const scene::Scene& scene,
   }
   if (levels.empty())
     return fail(ErrorCode::bad_input,
-                "--plane {}: no surface that faces up has so much room above it; give a lower one, "
-                "in metres above the floor, or name the floor with --floor",
+                "--plane {}: no surface that faces up has that much room above it; give a lower "
+                "plane, in metres above the floor, or name the floor with --floor",
                 params.plane_m);
   std::vector<Floor> floors;
   for (const Level& level : levels) {

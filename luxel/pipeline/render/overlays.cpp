@@ -183,7 +183,7 @@ Result<std::vector<std::string>> parse_overlays(std::string_view text) {
   if (text.empty()) return out;
   for (const std::string_view name : split_at_commas(text)) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-      return fail(ErrorCode::bad_setting, "--overlay {} is not known; there is: {}", name,
+      return fail(ErrorCode::bad_setting, "--overlay {} is not known; choose from: {}", name,
                   overlay_names());
     out.emplace_back(name);
   }

@@ -46,7 +46,7 @@ Result<Picture> read_picture(const std::filesystem::path& path) {
     decode(picture.linear);
   } else {
     return fail(ErrorCode::bad_input,
-                "{}: this is no picture that luxel reads; give an EXR, HDR, PNG or JPEG file",
+                "{}: this is not a picture that luxel can read; give an EXR, HDR, PNG or JPEG file",
                 name);
   }
   return picture;

@@ -17,14 +17,14 @@ Status check_output(const RenderSettings& s, const Technique* technique) {
     return fail(ErrorCode::bad_setting, "--output {} is neither .png, .exr nor .hdr", name);
   if (!technique && !png)
     return fail(ErrorCode::bad_setting,
-                "--output {}: a contact sheet shows colours of a screen; name it .png", name);
+                "--output {}: a contact sheet holds display colours; name it .png", name);
   for (const auto& [option, given] : {std::pair{"--exposure", s.exposure.has_value()},
                                       {"--tone-map", s.tone_map.has_value()},
                                       {"--overlay", !s.overlays.empty()}})
     if (given && !png)
       return fail(ErrorCode::bad_setting,
-                  "{} means nothing for {}, which holds the light as it is; leave it out, or write "
-                  "a .png",
+                  "{} has no effect on {}, which holds light without tone mapping; leave it out, "
+                  "or write a .png",
                   option, name);
   return check_output_file(s.output);
 }
@@ -57,11 +57,10 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
     if (option.given && !(technique.*option.used))
       return not_used(fmt::format("--technique {}", technique.name), option.name,
                       users_of(option.used),
-                      technique.needs_bake ? "a bake has its light from `luxel bake`" : "");
+                      technique.needs_bake ? "`luxel bake` sets the light of a bake" : "");
   if (technique.show && (s.exposure || s.tone_map))
     return fail(ErrorCode::bad_setting,
-                "--technique {} shows values by a scale of its own: {} would change nothing; leave "
-                "it out",
+                "--technique {} has a scale of its own, so {} has no effect; leave it out",
                 technique.name, s.exposure ? "--exposure" : "--tone-map");
   if (technique.needs_bake && !technique.bakes_itself && s.from.empty())
     return fail(ErrorCode::bad_setting,
@@ -75,7 +74,7 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
 Status check(const RenderSettings& s) {
   const Technique* technique = find_technique(s.technique);
   if (!technique && s.technique != kAllTechniques)
-    return fail(ErrorCode::bad_setting, "--technique {} is not known; there is: {}", s.technique,
+    return fail(ErrorCode::bad_setting, "--technique {} is not known; choose from: {}", s.technique,
                 technique_names());
   const int most = technique ? kMaxPictureSide : kMaxTileSide;
   if (s.width < 1 || s.height < 1 || s.width > most || s.height > most)

@@ -87,8 +87,8 @@ void BakeCache::open(const scene::Scene& scene, Progress& progress) {
   state_ = scene::state_of(scene);
   if (find(scene)) {
     changed_ = scene::in_words(state_, change_);
-    progress.note(changed_.empty() ? "nothing has changed since the bake that is kept"
-                                   : "since the bake that is kept " + changed_);
+    progress.note(changed_.empty() ? "nothing has changed since the kept bake"
+                                   : "changed since the kept bake: " + changed_);
     return;
   }
   if (!note_.empty()) progress.note(note_);
@@ -101,8 +101,8 @@ bool BakeCache::find(const scene::Scene& scene) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return false;
   const auto no = [&](std::string_view why) {
-    note_ = fmt::format("{}: {}; the bake starts from scratch, and is kept in its place",
-                        folder_.string(), why);
+    note_ =
+        fmt::format("{}: {}; this bake starts from scratch and replaces it", folder_.string(), why);
     return false;
   };
   const Result<RecordFile> found = RecordFile::open(file, RecordFile::Check::when_read);
@@ -111,22 +111,21 @@ bool BakeCache::find(const scene::Scene& scene) {
   if (!header.is_object() || !header.contains("cache") || header["cache"] != kFormat)
     return no("it was kept by another version of luxel");
   const std::string different = difference(header, *identity_);
-  if (!different.empty()) return no("it is of another bake: " + different);
+  if (!different.empty()) return no("it belongs to another bake: " + different);
   found_ = read_kept(*found);
   if (!found_) return no("light.luxel is damaged");
   change_ = scene::change_between(found_->scene, state_);
   // Whether light gets behind it decides which surfaces have light of their own on both sides.
   for (const uint32_t m : change_.reshaped)
     if (scene.materials[m].double_sided)
-      change_.beyond =
-          fmt::format("material '{}', which is double-sided, lets light through otherwise",
-                      scene.materials[m].name);
+      change_.beyond = fmt::format("double-sided material '{}' transmits light differently",
+                                   scene.materials[m].name);
   if (change_.beyond.empty() && found_->layout.mesh_of_instance.size() == scene.instances.size()) {
     seconds_before_ = found_->seconds;
     return built_on_ = true;
   }
   found_.reset();
-  return no(change_.beyond.empty() ? "it is of another scene" : change_.beyond);
+  return no(change_.beyond.empty() ? "it belongs to another scene" : change_.beyond);
 }
 
 const RecordFile* BakeCache::found_rays(Progress& progress) {
@@ -136,10 +135,10 @@ const RecordFile* BakeCache::found_rays(Progress& progress) {
   if (!rays)
     note_ = rays.error().message;
   else if (rays->header() != header_of(*identity_, found_->scene))
-    note_ = rays_file(folder_).string() + " is not of the bake that is kept";
+    note_ = rays_file(folder_).string() + " does not belong to the kept bake";
   else
     return &found_rays_.emplace(std::move(*rays));
-  note_ += "; all rays are traced. Remove the folder to keep a bake anew";
+  note_ += "; all rays are traced; remove the folder to keep a new bake";
   progress.note(note_);
   return nullptr;
 }

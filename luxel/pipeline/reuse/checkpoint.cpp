@@ -79,7 +79,7 @@ std::string difference(const json& there, const json& here) {
     if (!setting.empty() || (!there.contains("scene") && !here.contains("scene"))) return setting;
     return scene::difference(items_of(there.at("scene")), items_of(here.at("scene")));
   } catch (const std::exception&) {  // whole by its digest, but not written by a bake
-    return "its header is none of luxel's";
+    return "its header is not luxel's";
   }
 }
 
@@ -114,13 +114,13 @@ Result<std::optional<RecordFile>> Checkpoint::own_file(const std::string& header
     LUXEL_TRY(found, RecordFile::open(file));
     if (const std::string different = difference_of(*found, header); !different.empty())
       return fail(ErrorCode::bad_setting,
-                  "{} is of another bake: {}; {} to start from the beginning", file.string(),
+                  "{} belongs to another bake: {}; {} to start from the beginning", file.string(),
                   different, is_part ? "remove it" : "leave --resume out");
     resumed_ = true;
   } else if (there) {
     note_ = fmt::format(
-        "{} is of a bake that did not end; this one starts from the beginning, --resume would go "
-        "on with it",
+        "{} belongs to an unfinished bake; this bake starts from the beginning, --resume would "
+        "continue that one",
         file.string());
   } else if (settings_.resume && !is_part && settings_.parts.empty() &&
              other_parts(settings_, file).empty()) {
@@ -141,12 +141,12 @@ Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& heade
     if (!other && !are_checkpoints) return tl::unexpected(other.error());
     const std::string different = other ? difference_of(*other, header) : other.error().message;
     if (!different.empty() && are_checkpoints) {
-      progress.note(fmt::format("{} is left alone: {}", file.string(), different));
+      progress.note(fmt::format("{} is ignored: {}", file.string(), different));
       continue;
     }
     if (!different.empty())
       return fail(ErrorCode::bad_setting,
-                  "{} is of another bake: {}; take it away, or give another --output",
+                  "{} belongs to another bake: {}; move it away, or give another --output",
                   file.string(), different);
     out.push_back(std::move(*other));
   }
@@ -163,11 +163,11 @@ Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   LUXEL_TRY(std::optional<RecordFile> found, own_file(header, progress));
   LUXEL_TRY(std::vector<RecordFile> others, other_files(header, progress));
   resumed_ = resumed_ || (settings_.resume && !others.empty());
-  PartStoreParams params{file_, header, "--resume goes on from " + file_.string(),
+  PartStoreParams params{file_, header, "--resume continues from " + file_.string(),
                          settings_.checkpoint_s, start_};
-  if (!settings_.parts.empty()) params.way_on = "the same command goes on";
+  if (!settings_.parts.empty()) params.way_on = "the same command continues";
   if (!settings_.part.is_all()) {
-    params.way_on = "the same command goes on from " + params.file.string();
+    params.way_on = "the same command continues from " + params.file.string();
     params.share = PartShare{uint32_t(settings_.part.number - 1), uint32_t(settings_.part.of)};
     params.interval_s = std::max(params.interval_s, 1.0);
     params.start -= std::chrono::seconds(size_t(params.interval_s) + 1);  // from now on

@@ -26,13 +26,13 @@ Status check_same_work(Team* team, const scene::Scene& scene, uint64_t more, Pro
   for (size_t rank = 1; rank < all.size(); ++rank) {
     ByteReader here{all[0]}, there{all[rank]};
     if (here.get_value<uint64_t>() != there.get_value<uint64_t>())
-      return fail(ErrorCode::bad_input,
-                  "process {} has another scene than process 0; are its files those of process 0?",
-                  rank);
+      return fail(
+          ErrorCode::bad_input,
+          "process {} has another scene than process 0; check that both read the same files", rank);
     if (here.get_value<uint64_t>() != there.get_value<uint64_t>())
       return fail(ErrorCode::bad_input,
-                  "process {} has other options than process 0, or has laid the scene out "
-                  "differently; is its node's processor of another kind?",
+                  "process {} has other options or another layout of the scene than process 0; "
+                  "check that their nodes have processors of the same kind",
                   rank);
   }
   return {};

@@ -30,66 +30,62 @@ Options<S> sampling_options() {
       BakeRows::choice(
           "--quality", &S::quality,
           {{"draft", Quality::draft}, {"good", Quality::good}, {"best", Quality::best}},
-          "How good the light is: sets --samples, --direct-samples, --supersample and "
-          "--denoise where they are not given; good if nothing else is said")
+          "Preset for --samples, --direct-samples, --supersample and --denoise where you do not "
+          "set them; default: good")
           .only(&Can::quality)
           .leaves(Changes::nothing),
       BakeRows::number("--samples", &S::samples, {1, kMaxSamples},
-                       "Indirect rays per texel; gather has --quality's where none is given")
+                       "Indirect rays per texel; for gather, the default comes from --quality")
           .unit("RAYS")
           .only(&Can::samples),
-      BakeRows::number(
-          "--direct-samples", &S::direct_samples, {1, kMaxSamples},
-          "Shadow rays per texel towards area lights; auto: as --samples asks for, so that "
-          "direct light is as well known as the rest")
+      BakeRows::number("--direct-samples", &S::direct_samples, {1, kMaxSamples},
+                       "Shadow rays per texel to area lights; auto: derived from --samples, so "
+                       "that direct light is as accurate as indirect light")
           .unit("RAYS")
           .only(&Can::direct_samples),
       BakeRows::number("--supersample", &S::supersample, {1, 1024},
-                       "Points per texel across which direct light varies; 1: none; auto: as "
-                       "--samples asks for")
+                       "Points in each texel across which direct light varies; 1: no "
+                       "supersampling; auto: derived from --samples")
           .unit("POINTS")
           .only(&Can::supersample),
       BakeRows::text("--bounces", &S::bounces, parse_bounces, json_of_bounces,
-                     "Reflections to count, or inf")
+                     "Number of bounces, or inf")
           .unit("COUNT"),
       BakeRows::number(
           "--max-error", &S::max_error,
           {kSmallestError, 1, "",
-           "an error of 0 would never end; give the part of their light to which texels must be "
-           "known, as 0.02"},
-          "Add rays until the light errs by less than this part of itself, e.g. 0.02")
+           "a bake to an error of 0 would never end; give the relative error to reach, as 0.02"},
+          "Add rays until the relative error of the light is below this, e.g. 0.02")
           .unit("ERROR")
           .only(&Can::errors),
-      BakeRows::choice(
-          "--error-measure", &S::error_measure,
-          {{"p95", gather::ErrorMeasure::p95}, {"rms", gather::ErrorMeasure::rms}},
-          "What --max-error says: p95: 95 % of texels err by less than this part of their own "
-          "light; rms: the root mean square error of all texels, over their mean light")
+      BakeRows::choice("--error-measure", &S::error_measure,
+                       {{"p95", gather::ErrorMeasure::p95}, {"rms", gather::ErrorMeasure::rms}},
+                       "What --max-error limits: p95: the relative error of 95 % of the texels; "
+                       "rms: the root mean square error of all texels, over their mean light")
           .only(&Can::errors),
       BakeRows::number(
           "--time-budget", &S::time_budget_s,
-          {kShortestBudget_s, kLongestBudget_s, "is not a time to bake in; give seconds, as 60"},
-          "gather: the lowest error within about this many seconds in total; with --max-error "
-          "until "
-          "either is reached. hierarchical: less refinement where that helps. All but gather end "
-          "with code 3 when it is over")
+          {kShortestBudget_s, kLongestBudget_s, "is not a time budget; give seconds, as 60"},
+          "Time for the whole bake. gather: reach the lowest error in about this many seconds, or "
+          "stop at --max-error; hierarchical: refine less if time is short; all but gather exit "
+          "with code 3 when time runs out")
           .key_is("time_budget_s")
           .unit("SECONDS"),
-      BakeRows::number("--seed", &S::seed, {0}, "Seed of all random numbers"),
+      BakeRows::number("--seed", &S::seed, {0}, "Random seed"),
   };
 }
 
 /// Where texels lie.
 Options<S> layout_options() {
   return {
-      BakeRows::number(
-          "--resolution", &S::resolution, {1, kMaxResolution},
-          "Side of a lightmap in texels; without it, as fine as the scene deserves, up to "
-          "some 2 million texels")
+      BakeRows::number("--resolution", &S::resolution, {1, kMaxResolution},
+                       "Lightmap side in texels; default: as fine as the scene needs, up to about "
+                       "2 million texels")
           .unit("TEXELS"),
-      BakeRows::number("--texels-per-metre", &S::texels_per_metre,
-                       {0, kNoLimit, "is not a density; give a number > 0", "", true},
-                       "Density; the side becomes the smallest power of two that holds the scene")
+      BakeRows::number(
+          "--texels-per-metre", &S::texels_per_metre,
+          {0, kNoLimit, "is not a density; give a number > 0", "", true},
+          "Texel density; the lightmap side becomes the smallest power of two that fits the scene")
           .unit("DENSITY"),
       BakeRows::text(
           "--pages", &S::pages, parse_pages, [](auto& p) { return json(text_of(p)); },
@@ -101,7 +97,7 @@ Options<S> layout_options() {
                         {"unwrap", atlas::UvMode::unwrap}},
                        std::string(kUvHelp)),
       BakeRows::toggle("--no-leak-repair", &S::repair_leaks,
-                       "Do not cut charts under thin walls, nor move samples out of solids")
+                       "Do not cut charts under thin walls or move samples out of solids")
           .key_is("repair_leaks"),
   };
 }
@@ -111,7 +107,8 @@ Options<S> result_options() {
   return {
       BakeRows::choice("--directional", &S::directional,
                        {{"dominant", Directional::dominant}, {"sh1", Directional::sh1}},
-                       "Also store how irradiance changes with the normal: dominant or sh1")
+                       "Also write how irradiance changes with the normal, for normal maps: "
+                       "dominant (a direction) or sh1 (spherical harmonics)")
           .leaves(Changes::results),
       BakeRows::number("--probes", &S::probe_spacing_m,
                        {0, kNoLimit, "is not a spacing; give metres > 0", "", true},
@@ -122,8 +119,8 @@ Options<S> result_options() {
       BakeRows::choice(
           "--layers", &S::layers,
           {{"per-light", light::LayerMode::per_light}, {"groups", light::LayerMode::groups}},
-          "Also write a lightmap of each light (per-light), or of each group of lights whose "
-          "names differ only by a number at the end (groups)")
+          "Also write a lightmap for each light (per-light), or for each group of lights whose "
+          "names differ only in a trailing number (groups)")
           .never_without(&Can::layers)
           .leaves(Changes::results),
       BakeRows::choice("--light", &S::light,
@@ -131,46 +128,45 @@ Options<S> result_options() {
                         {"direct", LightPart::direct},
                         {"indirect", LightPart::indirect},
                         {"no-punctual", LightPart::no_punctual}},
-                       "The light of the lightmap: all; direct; indirect, reflected at least once; "
-                       "or no-punctual, all but what comes straight from point, spot and "
-                       "directional lights, for engines that add those themselves")
+                       "Light in the lightmap: all; direct; indirect: light that has bounced at "
+                       "least once; no-punctual: all but the direct light of point, spot and "
+                       "directional lights, for engines that add it themselves")
           .never_without(&Can::direct),
       BakeRows::text(
           "--shadow-mask", &S::shadow_mask, parse_shadow_mask,
           [](auto& names) { return names.empty() ? json() : json(names); },
-          "Also write shadow-mask.png and .exr: how much of up to four point, spot or directional "
-          "lights each texel sees; auto: the first four")
+          "Also write shadow-mask.png and .exr: how much each texel sees of up to four point, spot "
+          "or directional lights; auto: the first four")
           .unit("LIGHT,...|auto")
           .leaves(Changes::results),
       BakeRows::text(
           "--ambient-occlusion", &S::occlusion_distance_m, parse_distance,
           [](double d) { return std::isinf(d) ? json("inf") : json(d); },
-          "Also write ambient-occlusion.png and .exr: the share of directions in which nothing is "
-          "nearer than this many metres, or inf")
+          "Also write ambient-occlusion.png and .exr: the share of directions that nothing blocks "
+          "within this distance in metres, or inf")
           .key_is("occlusion_distance_m")
           .unit("METRES")
           .leaves(Changes::results),
-      BakeRows::toggle("--denoise", &S::denoise,
-                       "Remove the noise of few samples; edges of shadows stay")
+      BakeRows::toggle("--denoise", &S::denoise, "Denoise the light, and keep shadow edges")
           .never_without(&Can::noise)
           .never_with({"--no-denoise"})
           .leaves(Changes::results),
-      BakeRows::toggle("--no-denoise", &S::denoise, "Leave the light as it was sampled")
+      BakeRows::toggle("--no-denoise", &S::denoise, "Do not denoise")
           .key_is("")
           .only(&Can::noise)
           .leaves(Changes::results),
       BakeRows::toggle("--no-stitch", &S::stitch, "Do not blend charts along seams")
           .leaves(Changes::results),
-      BakeRows::choice("--attach", &S::attach,
-                       {{"lightmap", export_::Attach::lightmap},
-                        {"combined", export_::Attach::combined},
-                        {"emissive", export_::Attach::emissive}},
-                       "How baked.glb shows the light: lightmap needs a viewer that knows "
-                       "MOZ_lightmap; combined (unlit colour times light) and emissive (emission) "
-                       "show in any")
+      BakeRows::choice(
+          "--attach", &S::attach,
+          {{"lightmap", export_::Attach::lightmap},
+           {"combined", export_::Attach::combined},
+           {"emissive", export_::Attach::emissive}},
+          "How baked.glb carries the light: lightmap (for viewers that support MOZ_lightmap), or, "
+          "for any viewer, combined (unlit colour times light) or emissive (emission)")
           .leaves(Changes::nothing),
       BakeRows::toggle("--vertex-colors", &S::vertex_colors,
-                       "baked.glb gets light per vertex in COLOR_0 instead of the lightmap")
+                       "Store light per vertex in COLOR_0 of baked.glb instead of the lightmap")
           .never_without(&Can::vertex_light)
           .leaves(Changes::nothing),
       BakeRows::toggle(
@@ -186,11 +182,12 @@ Options<S> result_options() {
           .leaves(Changes::nothing),
       BakeRows::text(
           "--formats", &S::formats, parse_formats, [](auto& f) { return to_json(f); },
-          "The lightmap as exr (always), hdr, rgbm, rgbe, half and ktx2, with commas between them")
+          "Lightmap formats, separated by commas: exr (always written), hdr, rgbm, rgbe, half, "
+          "ktx2")
           .unit("LIST")
           .leaves(Changes::nothing),
       BakeRows::toggle("--html", &S::html,
-                       "Also write view.html: the baked scene as one page to walk around in")
+                       "Also write view.html: a single page to walk through the baked scene")
           .leaves(Changes::nothing),
       BakeRows::text(
           "--view", &S::view,
@@ -211,17 +208,17 @@ Options<S> running_options() {
           .key_is("max_memory_bytes")
           .unit("SIZE")
           .leaves(Changes::nothing),
-      BakeRows::number("--threads", &S::threads, {0, 1024}, "Threads to use; 0 = all cores")
+      BakeRows::number("--threads", &S::threads, {0, 1024}, "Number of threads; 0: all cores")
           .leaves(Changes::nothing),
       BakeRows::number("--checkpoint", &S::checkpoint_s,
                        {0, kLongestCheckpoint_s, "", "give seconds; 0 keeps nothing"},
-                       "From this many seconds after the start on, keep finished parts in "
-                       "FOLDER/checkpoint.luxel until the bake is done; 0: never")
+                       "After this many seconds, start to save finished parts in "
+                       "FOLDER/checkpoint.luxel, which is removed when the bake is done; 0: never")
           .key_is("checkpoint_s")
           .unit("SECONDS")
           .only(&Can::parts)
           .leaves(Changes::nothing),
-      BakeRows::toggle("--resume", &S::resume, "Continue from the checkpoint in the folder")
+      BakeRows::toggle("--resume", &S::resume, "Continue from the checkpoint in the output folder")
           .key_is("")
           .only(&Can::parts)
           .leaves(Changes::nothing),
@@ -230,17 +227,15 @@ Options<S> running_options() {
           [](const BakePart& part) {
             return part.is_all() ? json() : json(fmt::format("{}/{}", part.number, part.of));
           },
-          "Do one part of the work only, as 3/16 the third of 16, and leave it in the folder; "
-          "luxel "
-          "merge ends the bake")
+          "Do only one part of the work, e.g. 3/16 for the third of 16, and leave it in the output "
+          "folder; luxel merge finishes the bake")
           .key_is("")
           .unit("K/N")
           .never_without(&Can::parts)
           .leaves(Changes::nothing),
-      BakeRows::toggle(
-          "--keep", &S::keep,
-          "Build on the bake kept in FOLDER/cache and retrace only what has changed in the "
-          "scene since; without one, bake and keep it there")
+      BakeRows::toggle("--keep", &S::keep,
+                       "Reuse the bake kept in FOLDER/cache and retrace only what has changed in "
+                       "the scene; if there is none, bake and keep it there")
           .never_without(&Can::keeps)
           .leaves(Changes::nothing),
   };

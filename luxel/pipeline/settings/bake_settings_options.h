@@ -12,11 +12,13 @@ Options<BakeSettings> bake_settings_options();
 
 /// Options that other commands share with a bake.
 inline constexpr std::string_view kUvHelp =
-    "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if it can hold the light";
+    "Lightmap layout: keep: the file's TEXCOORD_1; unwrap: a new layout; auto: keep if it can hold "
+    "the light, else unwrap";
 inline constexpr std::string_view kViewHelp =
-    "Where the picture is taken from: inside, outside, the front (looking along -Z), the top, or a "
-    "camera of the scene; by default its first, else inside of lit rooms and outside of all else";
+    "Viewpoint of the picture: interior, exterior, front (looking along -Z), top, or a camera of "
+    "the scene; default: its first camera, else interior for lit rooms and exterior for other "
+    "scenes";
 inline constexpr std::string_view kMaxMemoryHelp =
-    "Memory to stay under, as 900M or 1.5G (default: most of what is free)";
+    "Memory limit, e.g. 900M or 1.5G (default: most of the free memory)";
 
 }  // namespace luxel::pipeline

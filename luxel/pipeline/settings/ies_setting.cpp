@@ -57,7 +57,7 @@ Result<std::vector<std::string>> add_profiles(std::span<const IesSetting> settin
   std::vector<std::string> seen;
   for (const IesSetting& s : settings) {
     if (std::find(seen.begin(), seen.end(), s.light) != seen.end())
-      return fail(ErrorCode::bad_setting, "--ies {}={}: this light has another file already",
+      return fail(ErrorCode::bad_setting, "--ies {}={}: this light already has another file",
                   s.light, s.file.string());
     seen.push_back(s.light);
     LUXEL_TRY(const import::Ies ies, import::read_ies(s.file));
@@ -72,7 +72,7 @@ Result<std::vector<std::string>> add_profiles(std::span<const IesSetting> settin
     const std::string names = names_of_lights(scene);
     return fail(ErrorCode::bad_setting, "--ies {}={}: no point or spot light has this name; {}{}",
                 s.light, s.file.string(),
-                names.empty() ? "the scene has no such lights" : "there is: ", names);
+                names.empty() ? "the scene has no such lights" : "choose from: ", names);
   }
   return warnings;
 }

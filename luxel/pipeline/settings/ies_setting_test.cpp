@@ -78,8 +78,8 @@ TEST(IesSetting, UnknownNamesAreSaid) {
   EXPECT_THAT(error({{"x", file}}), AllOf(HasSubstr("--ies x="), HasSubstr("no such lights")));
   scene.lights.resize(2);
   scene.lights[0].name = "left", scene.lights[1].name = "right";
-  EXPECT_THAT(error({{"x", file}}), HasSubstr("there is: 'left', 'right'"));
-  EXPECT_THAT(error({{"left", file}, {"left", file}}), HasSubstr("another file already"));
+  EXPECT_THAT(error({{"x", file}}), HasSubstr("choose from: 'left', 'right'"));
+  EXPECT_THAT(error({{"left", file}, {"left", file}}), HasSubstr("already has another file"));
   EXPECT_THAT(error({{"left", disk.folder / "b.ies"}}), HasSubstr("b.ies"));
 }
 

@@ -23,8 +23,7 @@ Option<ImportParams> search_path_option() {
             for (const std::filesystem::path& path : paths) out.push_back(path.string());
             return out;
           },
-          "A folder besides the scene's own in which pictures and buffers may lie that the scene "
-          "names; may be given for several")
+          "Also look in this folder for pictures and buffers that the scene names; repeatable")
           .key_is("")
           .unit("DIR")
           .leaves(Changes::scene);
@@ -43,16 +42,16 @@ Option<ImportParams> search_path_option() {
 Options<ImportParams> import_options() {
   return {Rows<ImportParams>::number(
               "--smooth-normals", &ImportParams::smooth_normals_deg, {0, 180},
-              fmt::format("Meshes without normals: smooth across edges that bend by at most this "
-                          "angle, 0: flat; by default {} for OBJ and PLY, else flat",
+              fmt::format("For meshes without normals: smooth across edges that bend by at most "
+                          "this angle; 0: flat; default: {} for OBJ and PLY, else flat",
                           import::kUsualCreaseDeg))
               .key_is("smooth_normals_deg")
               .unit("DEG")
               .leaves(Changes::scene),
           search_path_option(),
-          Rows<ImportParams>::toggle("--trust-paths", &ImportParams::trust_paths,
-                                     "Read files that the scene names wherever they lie, outside "
-                                     "of its folder too")
+          Rows<ImportParams>::toggle(
+              "--trust-paths", &ImportParams::trust_paths,
+              "Read the files that the scene names even if they lie outside its folder")
               .key_is("")
               .leaves(Changes::scene)};
 }

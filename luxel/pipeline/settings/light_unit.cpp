@@ -33,12 +33,12 @@ LightUnit unit_of_light(const std::filesystem::path& file, const scene::Scene& o
   if (outside.background) unknown.push_back("--background states no unit");
   if (outside.environment) unknown.push_back("environment maps state no unit");
   if (!lux.empty() && !unknown.empty())
-    return {"lux", joined(lux) + "; " + joined(unknown) + ", so it is taken for candela and nits"};
+    return {"lux", joined(lux) + "; " + joined(unknown) + ", so candela and nits are assumed"};
   if (!lux.empty()) return {"lux", joined(lux)};
   if (!unknown.empty())
-    return {"W/m^2", joined(unknown) + "; were its values candela and nits, these would be lux"};
+    return {"W/m^2", joined(unknown) + "; if its values are candela and nits, these are lux"};
   // Nothing shines: add_outside_light() brings kDefaultSky.
-  return {"lux", "the sky of scenes without light is in lux"};
+  return {"lux", "the default sky is in lux"};
 }
 
 }  // namespace luxel::pipeline

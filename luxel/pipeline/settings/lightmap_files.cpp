@@ -35,10 +35,10 @@ Result<LightmapFormats> parse_formats(std::string_view text) {
     if (format != kFormats.end())
       formats.*format->wanted = true;
     else if (one != "exr")
-      return fail(ErrorCode::bad_setting,
-                  "--formats '{}': there is no format '{}'; there is: exr, {}, with commas between "
-                  "them",
-                  text, one, fmt::join(kFormats | std::views::transform(&Format::name), ", "));
+      return fail(
+          ErrorCode::bad_setting,
+          "--formats '{}': there is no format '{}'; choose from: exr, {}, with commas between them",
+          text, one, fmt::join(kFormats | std::views::transform(&Format::name), ", "));
   }
   return formats;
 }

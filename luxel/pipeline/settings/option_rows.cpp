@@ -52,7 +52,7 @@ Status not_a_number(std::string_view flag, std::string_view text) {
 }
 
 Status unknown_name(std::string_view flag, std::string_view name, std::string_view names) {
-  return fail(ErrorCode::bad_setting, "{} {} is not known; there is: {}", flag, name, names);
+  return fail(ErrorCode::bad_setting, "{} {} is not known; choose from: {}", flag, name, names);
 }
 
 }  // namespace luxel::pipeline

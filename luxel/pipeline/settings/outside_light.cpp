@@ -116,7 +116,7 @@ Option<L> environment_option() {
                                   {"rotation_deg", json_of_number(e.rotation_deg)},
                                   {"scale", json_of_number(e.scale)}};
                     }),
-                    "Equirectangular .hdr or .exr of the surroundings, turned and scaled")
+                    "Environment map: an equirectangular .hdr or .exr, rotated and scaled")
           .unit("FILE[,ROTATE_DEG[,SCALE]]");
   row.read_json = [read = row.read_text](L& s, const json& value) -> Status {
     LUXEL_TRY(const std::string text, environment_text(value));
@@ -127,20 +127,20 @@ Option<L> environment_option() {
 
 Option<L> sky_option() {
   Option<L> row =
-      Rows<L>::text("--sky", &L::sky, parse_sky, when_set<SkySetting>([](const SkySetting& sky) {
-                      return json{{"azimuth_deg", sky.azimuth_deg},
-                                  {"elevation_deg", sky.elevation_deg},
-                                  {"turbidity", sky.turbidity},
-                                  {"sun_distance_au", sky.sun_distance_au}};
-                    }),
-                    "A clear sky with its sun in lux, by the sun's bearing and elevation or by "
-                    "date, time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity 1 to 10 "
-                    "(2)")
+      Rows<L>::text(
+          "--sky", &L::sky, parse_sky, when_set<SkySetting>([](const SkySetting& sky) {
+            return json{{"azimuth_deg", sky.azimuth_deg},
+                        {"elevation_deg", sky.elevation_deg},
+                        {"turbidity", sky.turbidity},
+                        {"sun_distance_au", sky.sun_distance_au}};
+          }),
+          "Add a clear sky with its sun, in lux, by the sun's azimuth and elevation or by date, "
+          "time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity: 1 to 10 (default: 2)")
           .unit("AZIMUTH_DEG,ELEVATION_DEG|TIME,LATITUDE,LONGITUDE[,TURBIDITY]")
           .never_with({"--background", "--sun", "--environment"});
   row.read_json = [read = row.read_text](L& s, const json& value) -> Status {
     if (!value.is_object())
-      return fail(ErrorCode::bad_setting, "--sky: {} is no sky", value.dump());
+      return fail(ErrorCode::bad_setting, "--sky: {} is not a sky", value.dump());
     LUXEL_TRY_STATUS(
         read(s, fmt::format("{},{},{}", value.value("azimuth_deg", 0.0),
                             value.value("elevation_deg", 45.0), value.value("turbidity", 2.0))));
@@ -167,8 +167,7 @@ Option<L> ies_option() {
                                          {"scale", json_of_number(ies.scale)}});
                         return out;
                       },
-                      "The distribution of a point or spot light from an IES file; may be given "
-                      "for several")
+                      "Give a point or spot light the distribution in an IES file; repeatable")
                       .unit("LIGHT=FILE[,SCALE]");
   row.repeats = true;
   row.read_text = [](L& s, std::string_view text) -> Status {
@@ -189,19 +188,19 @@ Option<L> ies_option() {
 }  // namespace
 
 Options<OutsideLight> outside_light_options() {
-  Options<L> rows{
-      Rows<L>::text("--background", &L::background, parse_background,
-                    when_set<Rgb>([](const Rgb& c) {
-                      return numbers({c.x, c.y, c.z});
-                    }),
-                    "Radiance of the surroundings as r,g,b")
-          .unit("R,G,B"),
-      Rows<L>::text("--sun", &L::sun, parse_sun, when_set<Sun>([](const Sun& sun) {
-                      return numbers({sun.azimuth_deg, sun.elevation_deg, sun.lux});
-                    }),
-                    "A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it")
-          .unit("AZIMUTH_DEG,ELEVATION_DEG,LUX"),
-      environment_option(), sky_option(), ies_option()};
+  Options<L> rows{Rows<L>::text("--background", &L::background, parse_background,
+                                when_set<Rgb>([](const Rgb& c) {
+                                  return numbers({c.x, c.y, c.z});
+                                }),
+                                "Background radiance as r,g,b")
+                      .unit("R,G,B"),
+                  Rows<L>::text("--sun", &L::sun, parse_sun, when_set<Sun>([](const Sun& sun) {
+                                  return numbers({sun.azimuth_deg, sun.elevation_deg, sun.lux});
+                                }),
+                                "Add a sun: azimuth (0 = -Z, 90 = +X), elevation, and illuminance "
+                                "on a surface that faces it")
+                      .unit("AZIMUTH_DEG,ELEVATION_DEG,LUX"),
+                  environment_option(), sky_option(), ies_option()};
   for (Option<L>& row : rows) row.changes = Changes::scene;
   return rows;
 }
@@ -230,8 +229,8 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, 
   if (scene::has_light(scene)) return warnings;
   add_sky(kDefaultSky, scene);
   warnings.push_back(fmt::format(
-      "the scene has no light: lit by a clear day, --sky {},{}; choose another by --sky, --sun, "
-      "--environment or --background, or put lights into the file{}{}",
+      "the scene has no light, so a clear sky lights it, --sky {},{}; choose other light with "
+      "--sky, --sun, --environment or --background, or add lights to the file{}{}",
       kDefaultSky.azimuth_deg, kDefaultSky.elevation_deg, about_lost_lights.empty() ? "" : "; ",
       about_lost_lights));
   return warnings;
@@ -243,9 +242,9 @@ bool is_lit_by_default_day(const OutsideLight& outside, const scene::Scene& scen
 
 std::string no_light_arrives(std::string_view what) {
   return fmt::format(
-      "{} is black: no light gets there; a closed room needs a light or an emissive surface "
-      "inside, "
-      "or an opening: a hole in its walls, or a window of a blended or transmissive material",
+      "{} is black because no light gets there; a closed room needs a light or an emissive surface "
+      "inside, or an opening: a hole in its walls, or a window of a blended or transmissive "
+      "material",
       what);
 }
 

@@ -18,15 +18,14 @@ Status check_pages(const BakeSettings& s) {
   const std::string pages = text_of(s.pages);
   if (s.uv == atlas::UvMode::keep)
     return fail(ErrorCode::bad_setting,
-                "--uv keep takes the file's layout, which is one lightmap, and --pages {} asks for "
+                "--uv keep uses the file's layout, which is one lightmap, but --pages {} asks for "
                 "others; leave one of them out",
                 pages);
   if (s.pages.mode == atlas::PageMode::fixed && s.texels_per_metre > 0)
-    return fail(
-        ErrorCode::bad_setting,
-        "--texels-per-metre {} says how many texels there are, and so does --pages {}; give "
-        "--pages auto, or a --resolution instead of the density",
-        s.texels_per_metre, pages);
+    return fail(ErrorCode::bad_setting,
+                "--texels-per-metre {} and --pages {} both set the number of texels; give --pages "
+                "auto, or a --resolution instead of the density",
+                s.texels_per_metre, pages);
   return {};
 }
 
@@ -39,8 +38,8 @@ Status check_layers(const BakeSettings& s) {
                                                            : nullptr;
   if (other)
     return fail(ErrorCode::bad_setting,
-                "--layers {} does not go together with {}, which looks at all light at once; leave "
-                "one of them out",
+                "--layers {} cannot be combined with {}, which needs all light at once; leave one "
+                "of them out",
                 pipeline::name_of(s.layers), other);
   return {};
 }
@@ -50,12 +49,12 @@ Status check_keep(const BakeSettings& s) {
   if (!s.keep) return {};
   if (s.resume)
     return fail(ErrorCode::bad_setting,
-                "--keep does not go together with --resume: a bake that is to be kept has no "
-                "checkpoint; leave one of them out");
+                "--keep cannot be combined with --resume: a kept bake has no checkpoint; leave one "
+                "of them out");
   if (s.time_budget_s > 0)
     return fail(ErrorCode::bad_setting,
-                "--keep does not go together with --time-budget {}: what is kept should not depend "
-                "on the clock; use --max-error",
+                "--keep cannot be combined with --time-budget {}: a kept bake must not depend on "
+                "the clock; use --max-error",
                 s.time_budget_s);
   return {};
 }
@@ -70,8 +69,7 @@ Status check_light(const BakeSettings& s) {
                                                            : nullptr;
   if (!other) return {};
   return fail(ErrorCode::bad_setting,
-              "--light {} does not go together with {}, which needs all light; leave one of them "
-              "out",
+              "--light {} cannot be combined with {}, which needs all light; leave one of them out",
               pipeline::name_of(s.light), other);
 }
 
@@ -80,14 +78,13 @@ Status check_part(const BakeSettings& s) {
   if (s.part.is_all()) return {};
   const std::string part = fmt::format("--part {}/{}", s.part.number, s.part.of);
   if (s.time_budget_s > 0)
-    return fail(
-        ErrorCode::bad_setting,
-        "{} does not go together with --time-budget {}: the parts of a bake must not depend "
-        "on the clock; use --max-error or --samples",
-        part, s.time_budget_s);
+    return fail(ErrorCode::bad_setting,
+                "{} cannot be combined with --time-budget {}: the parts of a bake must not depend "
+                "on the clock; use --max-error or --samples",
+                part, s.time_budget_s);
   if (s.keep)
     return fail(ErrorCode::bad_setting,
-                "{} does not go together with --keep, which needs all rays; leave one of them out",
+                "{} cannot be combined with --keep, which needs all rays; leave one of them out",
                 part);
   return {};
 }
@@ -97,7 +94,7 @@ Status check_attach(const BakeSettings& s) {
   if (s.attach == export_::Attach::lightmap || !s.vertex_colors) return {};
   return fail(ErrorCode::bad_setting,
               "--vertex-colors puts the light of baked.glb into its vertices, and --attach {} into "
-              "pictures; leave one of them out",
+              "textures; leave one of them out",
               s.attach == export_::Attach::combined ? "combined" : "emissive");
 }
 
@@ -161,11 +158,10 @@ Result<BakePart> parse_part(std::string_view text) {
     if (number && of && *number >= 1 && *number <= *of && *of <= kMostParts)
       return BakePart{*number, *of};
   }
-  return fail(
-      ErrorCode::bad_setting,
-      "--part {} is no part of a bake; give its number and how many there are, as 3/16; {} at "
-      "most",
-      text, kMostParts);
+  return fail(ErrorCode::bad_setting,
+              "--part {} is not a part of a bake; give its number and the number of parts, as "
+              "3/16, with {} parts at most",
+              text, kMostParts);
 }
 
 Result<PagesSetting> parse_pages(std::string_view text) {

@@ -127,7 +127,7 @@ Result<const Row*> option_of(const Solver& solver, std::string_view flag) {
 Status check(const BakeSettings& s) {
   const Solver* solver = find_solver(s.solver);
   if (!solver)
-    return fail(ErrorCode::bad_setting, "--solver {} is not known; there is: {}", s.solver,
+    return fail(ErrorCode::bad_setting, "--solver {} is not known; choose from: {}", s.solver,
                 solver_names());
   for (const Row& row : bake_options())
     if (may_concern(row, solver->name)) LUXEL_TRY_STATUS(row.check(s));
@@ -145,13 +145,13 @@ json to_json(const BakeSettings& settings) {
 
 Status read_json(const json& all, BakeSettings& settings) {
   const json& object = all.contains("settings") ? all["settings"] : all;
-  if (!object.is_object()) return fail(ErrorCode::bad_setting, "there are no settings in it");
+  if (!object.is_object()) return fail(ErrorCode::bad_setting, "it has no settings");
   try {
     if (object.contains("scene")) settings.scene = object["scene"].get<std::string>();
     if (object.contains("solver")) settings.solver = object["solver"].get<std::string>();
     return read_object(object, settings);
   } catch (const json::exception&) {
-    return fail(ErrorCode::bad_setting, "a value has another type than bake.json gives it");
+    return fail(ErrorCode::bad_setting, "a value has the wrong type");
   }
 }
 
@@ -160,7 +160,7 @@ Status read_settings(const std::filesystem::path& file, BakeSettings& settings) 
   const char* begin = reinterpret_cast<const char*>(bytes.data());
   const json all = json::parse(begin, begin + bytes.size(), nullptr, false);
   if (all.is_discarded())
-    return fail(ErrorCode::bad_input, "{} is no JSON; give the bake.json of an earlier bake",
+    return fail(ErrorCode::bad_input, "{} is not JSON; give the bake.json of an earlier bake",
                 file.string());
   const Status done = read_json(all, settings);
   if (done) return {};

@@ -42,18 +42,18 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
                                  ? fmt::format("--max-error {}", settings.max_error)
                                  : fmt::format("--time-budget {}", settings.time_budget_s);
   if (settings.samples_given)
-    warnings.push_back(fmt::format("{} decides how many rays there are; --samples {} is ignored",
-                                   winner, settings.samples));
+    warnings.push_back(fmt::format("{} sets the number of rays; --samples {} is ignored", winner,
+                                   settings.samples));
   const bool is_rms = settings.error_measure == gather::ErrorMeasure::rms;
   const double error = is_rms ? result.relative_error : double(result.error_p95);
   const double noise = is_rms ? result.relative_noise : double(result.noise_p95);
   if (settings.max_error <= 0 || error <= settings.max_error) return;
   const std::string why =
       noise <= settings.max_error
-          ? "since texels are too large to show how light varies; give a higher --resolution"
+          ? "because texels are too large to show how light varies; give a higher --resolution"
       : settings.time_budget_s > 0
-          ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
-          : fmt::format("and none gets more than {} rays", params.max_samples);
+          ? fmt::format("when --time-budget {} ran out", settings.time_budget_s)
+          : fmt::format("at the limit of {} rays per texel", params.max_samples);
   warnings.push_back(fmt::format(
       "--max-error {} was not reached: {} {:.2g}, {}", settings.max_error,
       is_rms ? "the root mean square error is" : "95 % of texels err by less than", error, why));
@@ -110,8 +110,8 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
   LUXEL_TRY(left, first_of(stores.team, left, progress));
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(
-        fmt::format("--time-budget {} leaves {:.1f} s for light, after reading and laying out the "
-                    "scene and before drawing and writing: too little, it takes longer",
+        fmt::format("--time-budget {} leaves {:.1f} s for the light, besides reading, layout, "
+                    "drawing and writing; that is too little, and the bake takes longer",
                     settings.time_budget_s, std::max(left, 0.0)));
   shrink_first_round(forecast, left, params);
   params.seconds = std::max(left, 1e-3);

@@ -101,7 +101,7 @@ std::string hemicube_memory(int resolution) {
 Option<P> resolution_option() {
   Option<P> row =
       HemicubeRows::number("--hemicube", &P::resolution, {2, double(hemicube::kMaxResolution)},
-                           "Pixels along an edge of the hemicube's top, even")
+                           "Pixels along an edge of the hemicube's top; an even number")
           .key_is("resolution")
           .unit("PIXELS");
   row.check = [](const P& p) -> Status {
@@ -129,25 +129,24 @@ Options<hemicube::HemicubeParams> hemicube_options() {
       HemicubeRows::choice("--elements", &P::elements,
                            {{"vertex", hemicube::ElementKind::vertex},
                             {"triangle", hemicube::ElementKind::triangle}},
-                           "Light per vertex or per triangle"),
+                           "Compute light per vertex or per triangle"),
       resolution_option(),
       HemicubeRows::number("--element-size", &P::element_size_m,
                            {0, kNoLimit, "is not a length; give metres > 0", "", true},
-                           "Size of the first triangles in metres (default: by --max-elements)")
+                           "Size of the initial triangles in metres (default: from --max-elements)")
           .key_is("element_size_m")
           .unit("METRES"),
-      HemicubeRows::number("--max-elements", &P::max_elements, {1, kMaxElements},
-                           "Vertices or triangles at most (default: 20000, more for large scenes)")
+      HemicubeRows::number(
+          "--max-elements", &P::max_elements, {1, kMaxElements},
+          "Largest number of vertices or triangles (default: 20000, more for large scenes)")
           .unit("COUNT"),
       HemicubeRows::number(
           "--max-error", &P::max_error,
-          {0, 1e6,
-           "is not an error; give a part of the light, as 0.01, or 0 for no "
-           "refinement"},
-          "Cut triangles over which interpolation errs by more than this part of the light; "
-          "0 cuts none; 0.01 by default")
+          {0, 1e6, "is not a relative error; give a number, as 0.01, or 0 for no subdivision"},
+          "Subdivide triangles whose relative interpolation error is larger; 0: subdivide none; "
+          "default: 0.01")
           .unit("ERROR"),
-      HemicubeRows::toggle("--smooth", &P::smooth, "Interpolate light that is per triangle"),
+      HemicubeRows::toggle("--smooth", &P::smooth, "Interpolate light computed per triangle"),
   };
 }
 
@@ -162,8 +161,8 @@ hemicube::HemicubeParams hemicube_params(const BakeSettings& settings) {
 Status check_contradictions(const hemicube::HemicubeParams& params) {
   if (!params.smooth || params.elements != hemicube::ElementKind::vertex) return {};
   return fail(ErrorCode::bad_setting,
-              "--smooth is for light per triangle; add --elements triangle, or leave it out, for "
-              "light per vertex is smooth");
+              "--smooth is for light per triangle; add --elements triangle, or leave it out, "
+              "because light per vertex is smooth");
 }
 
 Solver hemicube_solver() {

@@ -73,7 +73,8 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
 
 std::string about_left_out(const hierarchical::LeftOut& left_out, double budget_s) {
   return fmt::format(
-      "--time-budget {:g} was short: {} left out; more time, or a larger --eps, gives better light",
+      "--time-budget {:g} was too short: {} left out; more time, or a larger --eps, gives better "
+      "light",
       budget_s,
       left_out.refinement && left_out.feedback ? "refinement and feedback were"
       : left_out.refinement                    ? "refinement was"
@@ -86,33 +87,33 @@ Options<HierarchicalSettings> hierarchical_options() {
       R::number(
           "--eps", [](auto& s) -> auto& { return s.solve.eps; },
           {0, kNoLimit, "is not an error; give W/m^2 >= 0"},
-          "How much the light over a link may be off, in W/m^2 on an element of mean size "
-          "(default: a hundredth of the mean light)")
+          "Error limit of a link, in W/m^2 on an element of mean size (default: 1 % of the mean "
+          "light)")
           .unit("W/M^2"),
       R::number(
           "--min-area", [](auto& s) -> auto& { return s.solve.min_area_m2; },
           {0, kNoLimit, "is not an area; give m^2 >= 0"},
-          "Elements are not divided below this, in m^2 (default: by the scene)")
+          "Do not subdivide elements below this area in m^2 (default: from the scene)")
           .key_is("min_area_m2")
           .unit("M^2"),
       R::toggle(
           "--no-discontinuities", [](auto& s) -> auto& { return s.mesh.discontinuities; },
-          "Do not mesh along the edges of shadows"),
+          "Do not mesh along shadow edges"),
       R::number(
           "--max-leaf-lines", [](auto& s) -> auto& { return s.mesh.discontinuity.max_per_leaf; },
-          {0, 1000}, "Edges of shadows through an element, at most")
+          {0, 1000}, "Largest number of shadow edges through an element")
           .unit("COUNT"),
       R::number(
           "--min-weight", [](auto& s) -> auto& { return s.mesh.discontinuity.least_weight; },
           {0, kNoLimit, "is not a weight; give W/m^2 per m >= 0"},
-          "Edges over which light changes by less are left out, in W/m^2 per m; with --ranking "
-          "nearness in W/m^2 (default: by the light there is)")
+          "Leave out shadow edges across which light changes by less than this, in W/m^2 per m, or "
+          "in W/m^2 with --ranking nearness (default: from the light in the scene)")
           .unit("WEIGHT"),
       R::choice(
           "--ranking", [](auto& s) -> auto& { return s.mesh.discontinuity.ranking; },
           {{"slope", hierarchical::Ranking::slope}, {"nearness", hierarchical::Ranking::nearness}},
-          "Which edges of shadows come first: slope, by how much light changes per metre; "
-          "nearness, by how near to the surface what throws them is"),
+          "How to rank shadow edges: slope: by how much light changes per metre; nearness: by how "
+          "close the blocker is to the surface"),
   };
 }
 

@@ -93,11 +93,11 @@ Options<matrix::MatrixParams> matrix_options() {
   return {
       R::number(
           "--patches", [](auto& p) -> auto& { return p.patches.count; },
-          {1, double(matrix::kMaxPatches)}, "Approximate number of patches that exchange light")
+          {1, double(matrix::kMaxPatches)}, "Approximate number of patches")
           .unit("COUNT"),
       R::number(
           "--rays", [](auto& p) -> auto& { return p.factors.rays_per_patch; }, {1, kMaxRays},
-          "Rays per patch that estimate its form factors")
+          "Rays per patch to estimate its form factors")
           .unit("COUNT"),
   };
 }

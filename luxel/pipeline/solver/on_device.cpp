@@ -9,7 +9,7 @@ bool may_go_on_without(const BakeDevice& on, const Error& error) {
 }
 
 std::string warning_without(const BakeDevice& on, std::string_view why) {
-  return fmt::format("done by the processor, not by {}: {}", on.name, why);
+  return fmt::format("computed on the processor, not on {}: {}", on.name, why);
 }
 
 }  // namespace luxel::pipeline

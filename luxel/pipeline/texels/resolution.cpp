@@ -90,8 +90,7 @@ double narrow_part(const atlas::SceneDetail& detail, double density) {
 std::string about_gutters(const atlas::Atlas& atlas, const atlas::AtlasStats& stats) {
   if (atlas.kept || stats.utilisation >= kLowUtilisation) return {};
   return fmt::format(
-      "; {:.0f} % of the lightmap is in use, since {} charts have {} texels between "
-      "them",
+      "; {:.0f} % of the lightmap is in use, because its {} charts lie {} texels apart",
       100 * stats.utilisation, stats.charts, kGutter);
 }
 
@@ -142,7 +141,7 @@ Result<std::string> about_blended(const SettledResolution& settled, const scene:
                                : "--uv unwrap keeps them apart";
   return fmt::format(
       "TEXCOORD_1 has charts less than a texel apart at {} x {}: {:.2g} % of the texels take light "
-      "of another surface; {}",
+      "from another surface; {}",
       atlas.resolution, atlas.resolution, 100 * part, what);
 }
 
@@ -154,14 +153,14 @@ std::string about_resolution(const SettledResolution& settled, const atlas::Atla
   const bool fine = !(width > 0) || width * stats.texels_per_metre >= kFewestTexelsAcross;
   if (settled.chosen && settled.chosen->capped)
     return fmt::format(
-        "{:.3g} texels per metre are fewer than the {:.3g} that this scene deserves, "
-        "because a default bake stops at some {:.0f} million texels; {}{}",
+        "{:.3g} texels per metre are fewer than the {:.3g} that this scene needs, because a "
+        "default bake stops at about {:.0f} million texels; {}{}",
         stats.texels_per_metre, settled.chosen->wished, kMostTexelsByDefault * 1e-6,
         advice_for(settled, settled.chosen->wished), about_gutters(atlas, stats));
   if (fine) return {};
   return fmt::format(
-      "{:.3g} texels per metre are few: {:.0f} % of the surface lies in parts less "
-      "than {} texels wide, across which light cannot vary; {}{}",
+      "{:.3g} texels per metre are too few: {:.0f} % of the surface is in parts less than {} "
+      "texels wide, across which light cannot vary; {}{}",
       stats.texels_per_metre, 100 * narrow, kFewestTexelsAcross,
       advice_for(settled, kFewestTexelsAcross / width), about_gutters(atlas, stats));
 }

@@ -272,20 +272,19 @@ std::string percent(double share) {
 std::vector<std::string> what_uv1_shows(size_t count, const std::optional<WrongSides>& wrong) {
   if (!wrong)
     return {fmt::format(
-        "{} double-sided triangles see light on both sides, but have one place in TEXCOORD_1: "
-        "their backs show the light of their fronts; --uv unwrap gives each side its own",
+        "{} double-sided triangles get light on both sides, but have one place in TEXCOORD_1: "
+        "their backs show the light of their fronts; --uv unwrap gives each side its own place",
         count)};
   if (!may_be_kept(*wrong))
     return {fmt::format(
-        "TEXCOORD_1 is not kept: it has one place for both sides of double-sided surfaces, and "
-        "{} of it would show the light of the wrong side; --uv keep keeps it",
+        "TEXCOORD_1 is not kept: it has one place for both sides of double-sided surfaces, so {} "
+        "of it would show the light of the wrong side; --uv keep keeps it anyway",
         percent(wrong->shown))};
   if (wrong->all == 0) return {};
-  return {
-      fmt::format("TEXCOORD_1 has one place for both sides of double-sided surfaces: seen from "
-                  "behind, {} of it "
-                  "shows the light of the front; --uv unwrap gives each side its own",
-                  percent(wrong->all))};
+  return {fmt::format(
+      "TEXCOORD_1 has one place for both sides of double-sided surfaces: seen from behind, {} of "
+      "it shows the light of the front; --uv unwrap gives each side its own place",
+      percent(wrong->all))};
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ uint64_t paths_of(const PathPush& push, const Slices& slices) {
 
 std::string what_is_unknown(const scene::Scene& scene, const trace::RayTracer& tracer) {
   if (tracer.has_tints()) return "coloured glass";
-  if (scene::scatters_light(scene)) return "surfaces that scatter light through";
+  if (scene::scatters_light(scene)) return "surfaces that let scattered light through";
   for (const scene::PunctualLight& light : scene.lights)
     if (light.profile != scene::kNone) return "light profiles";
   return {};
@@ -213,9 +213,10 @@ Result<DevicePathTracer> DevicePathTracer::make(const gpu::Device& device,
                                                 const trace::RayTracer& tracer) {
   const std::string unknown = what_is_unknown(scene, tracer);
   if (!unknown.empty())
-    return fail(ErrorCode::unsupported,
-                "paths on the device know no {}, which the scene has: trace them on the processor",
-                unknown);
+    return fail(
+        ErrorCode::unsupported,
+        "the device cannot trace paths with {}, which the scene has: trace them on the processor",
+        unknown);
   if (!device.has_doubles)
     return fail(ErrorCode::unsupported, "{} has no double precision, which paths need",
                 device.name);

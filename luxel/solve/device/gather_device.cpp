@@ -19,8 +19,8 @@ class GatherDevice final : public gather::RayDevice {
     forget();
     if (in.tracer.has_tints())
       return fail(ErrorCode::unsupported,
-                  "rays on the device know no coloured glass, which the scene has: bake it on the "
-                  "processor");
+                  "the device cannot trace rays through coloured glass, which the scene has: bake "
+                  "it on the processor");
     LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device_));
     commands_.emplace(std::move(commands));
     LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(*device_, in.scene));

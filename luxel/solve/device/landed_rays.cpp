@@ -247,8 +247,8 @@ Result<std::vector<gather::HitTile>> end_open(const SlotChunk& slots,
   round.rays.left_open += open.size();
   if (round.more.size() <= kMostOpen) return ended;
   return fail(ErrorCode::unsupported,
-              "more than {} rays of a round end where only the processor knows what they bring: "
-              "bake with fewer samples or a smaller resolution, or without the device",
+              "more than {} rays of a round end where only the processor can compute their light: "
+              "bake with fewer samples or a lower resolution, or without the device",
               kMostOpen);
 }
 

@@ -219,8 +219,8 @@ Result<RelightBuffers> upload_relight_data(gpu::Commands& commands,
   const auto* bc1 = std::get_if<matrix::Bc1Codec>(&data.codec);
   if ((!hierarchical && !bc1) || data.size() == 0)
     return fail(ErrorCode::unsupported,
-                "relighting on the device knows files with patches and the codec hierarchical or "
-                "bc1: make the file anew with one of them, or relight on the processor");
+                "relighting on the device needs a file with patches and the codec hierarchical or "
+                "bc1: make the file again with one of them, or relight on the processor");
   RelightBuffers out;
   RelightSetup setup{};
   Sender to(commands, out);

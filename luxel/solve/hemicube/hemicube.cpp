@@ -83,10 +83,10 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
                         {.element_size_m = params.element_size_m, .max_vertices = out.max_elements},
                         progress));
     if (element_count(out.mesh, params.elements) > out.max_elements)
-      return fail(ErrorCode::bad_setting,
-                  "elements of {} m are {}, more than --max-elements {}; make them larger",
-                  params.element_size_m, element_count(out.mesh, params.elements),
-                  out.max_elements);
+      return fail(
+          ErrorCode::bad_setting,
+          "elements of {} m are {}, more than --max-elements {}; give a larger --element-size",
+          params.element_size_m, element_count(out.mesh, params.elements), out.max_elements);
     return out;
   }
   // Else as small as their number allows, less those that are to be cut later.

@@ -122,7 +122,7 @@ uint32_t grid_of(const scene::Scene& scene, uint32_t instance, float element_siz
 Status too_many(size_t vertices, const MeshParams& params) {
   if (vertices <= params.max_vertices) return {};
   return fail(ErrorCode::bad_setting,
-              "elements of {} m need more than {} vertices; make them larger, or allow more with "
+              "elements of {} m need more than {} vertices; give a larger --element-size, or more "
               "--max-elements",
               params.element_size_m, params.max_vertices);
 }

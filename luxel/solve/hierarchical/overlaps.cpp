@@ -77,10 +77,9 @@ std::vector<std::string> overlap_warnings(const scene::Scene& scene, const Faces
   }
   std::vector<std::string> out;
   if (on.count > 0)
-    out.push_back("faces lie on each other, so that chance says which one is lit: " + on.text());
+    out.push_back("faces coincide, so it is arbitrary which one is lit: " + on.text());
   if (through.count > 0)
-    out.push_back("faces pass through each other; light inside of them means nothing: " +
-                  through.text());
+    out.push_back("faces intersect, and the light inside them is meaningless: " + through.text());
   return out;
 }
 

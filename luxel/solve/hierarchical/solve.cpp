@@ -132,10 +132,10 @@ void add_warnings(const SolveParams& params, Solution& s) {
         fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",
                     *params.eps, s.eps));
   if (s.links.bounded)
-    s.warnings.push_back(fmt::format(
-        "refinement ended at {} elements and {} links, before all errors were below {:.3g} W/m^2; "
-        "ask for a larger --eps or --min-area",
-        s.tree.elements.size(), s.links.count, s.eps));
+    s.warnings.push_back(
+        fmt::format("refinement stopped at {} elements and {} links, before all errors were below "
+                    "{:.3g} W/m^2; give a larger --eps or --min-area",
+                    s.tree.elements.size(), s.links.count, s.eps));
 }
 
 }  // namespace

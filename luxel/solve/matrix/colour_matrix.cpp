@@ -116,8 +116,8 @@ Status factorise(Matrix& matrix, Progress& progress) {
     const Eigen::LLT<Matrix> corner(matrix.block(k, k, wide, wide));
     if (corner.info() != Eigen::Success)
       return fail(ErrorCode::bad_input,
-                  "bounces without end have no limit: reflectances of nearly 1 in a closed scene; "
-                  "lower them, or count the bounces");
+                  "infinite bounces do not converge: reflectances are nearly 1 in a closed scene; "
+                  "lower them, or limit the bounces");
     matrix.block(k, k, wide, wide) = corner.matrixL();
     const auto solve = [&](Eigen::Index row, Eigen::Index rows) {
       auto block = matrix.block(row, k, rows, wide);

@@ -117,7 +117,7 @@ Result<MadeCodec> make_codec(const CodecInput& t, const RelightParams& params, P
   const CodecKind kind = params.codec;
   if (looks_at_all_pairs(kind) && patches > kMaxDensePatches)
     return fail(ErrorCode::bad_setting,
-                "{} patches are too many for a codec that looks at all pairs, which takes {} at "
+                "{} patches are too many for a codec that handles all pairs, which takes {} at "
                 "most; ask for fewer, or for the hierarchical codec",
                 patches, kMaxDensePatches);
   progress.begin("codec", 0);

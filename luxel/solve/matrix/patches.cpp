@@ -425,7 +425,7 @@ Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTra
     if (count == 0)
       return fail(
           ErrorCode::bad_input,
-          "every surface of the scene lies inside a solid; do its triangles show their backs?");
+          "every surface of the scene lies inside a solid; are its triangles turned inside out?");
     const double ratio = double(count) / double(params.count);
     if (attempt == kMaxRetries || (ratio > kFewest && ratio < kMost)) {
       PatchedScene out = assemble(samples, parts, patch, grid);

@@ -37,7 +37,7 @@ DeviceRayTracer::DeviceRayTracer(const gpu::Device& device, const scene::Scene& 
 Status DeviceRayTracer::upload_hierarchy(HierarchyKind kind, size_t max_flat_triangles) {
   kind_ = kind;
   if (!(scene::world_bounds(*scene_).diagonal() < kLargestScene_m))
-    return fail(ErrorCode::unsupported, "rays on the device know no scene of more than {} m",
+    return fail(ErrorCode::unsupported, "the device cannot trace rays in a scene of more than {} m",
                 kLargestScene_m);
   if (kind == HierarchyKind::driver) return upload_driver_hierarchy(max_flat_triangles);
   LUXEL_TRY(const DeviceHierarchy hierarchy, device_hierarchy(*scene_, kind, max_flat_triangles));

@@ -87,7 +87,7 @@ Result<DriverHierarchy> driver_hierarchy(const scene::Scene& scene, size_t max_f
         place(first_part + k, first[i], i, scene.instances[i].world_from_object);
   }
   if (instances.size() > kMostPlaces)
-    return fail(ErrorCode::unsupported, "drivers know at most {} instances, not {}", kMostPlaces,
+    return fail(ErrorCode::unsupported, "drivers take at most {} instances, not {}", kMostPlaces,
                 instances.size());
   const auto behind = uint32_t(instances.size());
   for (DriverInstance& i : instances) i.first += behind, i.first_open += behind;
@@ -109,7 +109,7 @@ Result<DriverAcceleration> accelerate(gpu::Commands& commands, const DriverHiera
                                      are_opaque};
   };
   if (hierarchy.parts.size() > kMostParts)
-    return fail(ErrorCode::unsupported, "drivers are given at most {} meshes, not {}", kMostParts,
+    return fail(ErrorCode::unsupported, "drivers take at most {} meshes, not {}", kMostParts,
                 hierarchy.parts.size());
   DriverAcceleration out;
   for (const DriverPart& p : hierarchy.parts) {

@@ -55,7 +55,7 @@ Result<StoredTriangles> stored_triangles(const scene::Scene& scene, size_t max_f
   uint64_t drawn = 0;
   for (const scene::Instance& i : scene.instances) drawn += scene.meshes[i.mesh].triangles.size();
   if (drawn >= kMostDrawn)
-    return fail(ErrorCode::unsupported, "rays on the device know at most {} triangles, not {}",
+    return fail(ErrorCode::unsupported, "the device can trace rays to at most {} triangles, not {}",
                 kMostDrawn - 1, drawn);
   StoredTriangles out = take_triangles(scene, max_flat_triangles);
   size_t size = out.in_world.size();
@@ -63,7 +63,7 @@ Result<StoredTriangles> stored_triangles(const scene::Scene& scene, size_t max_f
     size += mesh.triangles.size() + 3 * mesh.instances.size();
   if (size >= ChildRef::kFirstMask)
     return fail(ErrorCode::unsupported,
-                "rays on the device know at most {} triangles that are no copies, not {}",
+                "the device can trace rays to at most {} triangles that are not copies, not {}",
                 ChildRef::kFirstMask - 1, size);
   find_see_through(scene, out);
   return out;

@@ -104,8 +104,8 @@ Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
             import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
   if (!is_as_read(file.scene, to_save.read->scene))
     return fail(ErrorCode::bad_input,
-                "{} has changed since it was read, so that the edited scene cannot be saved; bring "
-                "it back, or open it anew",
+                "{} has changed since it was read, so the edited scene cannot be saved; restore "
+                "the file, or open it again",
                 settings.scene.string());
   const export_::GltfEdits edits = edits_of(to_save, file);
   const bool is_gltf = !file.node_of_instance.empty();
@@ -129,8 +129,9 @@ Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
 std::string what_sky_lacks(const SceneToSave& to_save) {
   if (!to_save.now.sky) return "";
   return is_of_sky(to_save.read->sun->light, *to_save.read, to_save.now)
-             ? fmt::format("; no file has a sky: open it with --sky {}", to_save.now.sky->words)
-             : "; no file has a sky: of it, only the sun is there";
+             ? fmt::format("; a scene file cannot store the sky: open it with --sky {}",
+                           to_save.now.sky->words)
+             : "; a scene file cannot store the sky: only its sun is there";
 }
 
 }  // namespace luxel::view

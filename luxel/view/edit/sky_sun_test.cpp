@@ -135,7 +135,7 @@ TEST(SkySun, OfASavedSceneIsLeftToTheOptionThatIsSaid) {
   dim.light.intensity = dim.light.intensity * 0.5f;
   do_edit(lamp_set(0, dim, std::nullopt, tools.desk), tools.desk);
   EXPECT_FALSE(is_of_sky(0, *tools.desk.read, tools.desk.now));
-  EXPECT_THAT(lacks(), HasSubstr("only the sun"));
+  EXPECT_THAT(lacks(), HasSubstr("only its sun"));
 }
 
 }  // namespace

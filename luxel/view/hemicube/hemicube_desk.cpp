@@ -113,7 +113,7 @@ std::optional<std::string> wrong_with(const Event& event) {
       return "hemicube radiosity does not show '" + shown->name + "'";
   if (const auto* overlay = std::get_if<OverlayChanged>(&event))
     if (overlay->name != kReport && overlay->name != kLitFaces)
-      return fmt::format("there is no overlay '{}'; there are: {}, {}", overlay->name, kReport,
+      return fmt::format("there is no overlay '{}'; choose from: {}, {}", overlay->name, kReport,
                          kLitFaces);
   if (const auto* asked = std::get_if<OwnAsked>(&event))
     return "hemicube radiosity cannot do '" + asked->name + "'";
@@ -123,7 +123,7 @@ std::optional<std::string> wrong_with(const Event& event) {
   const auto* changed = std::get_if<SettingChanged>(&event);
   if (!changed) return std::nullopt;
   if (changed->name != kSize && changed->name != kPauseAt)
-    return fmt::format("there is no setting '{}'; there are: {}, {}", changed->name, kSize,
+    return fmt::format("there is no setting '{}'; choose from: {}, {}", changed->name, kSize,
                        kPauseAt);
   if (changed->name == kSize && hemicube_size(changed->to) != changed->to)
     return fmt::format("a hemicube has an even number of pixels from 2 to {}, not {}", kMostPixels,

@@ -113,9 +113,9 @@ TEST(HemicubeDesk, SaysWhatIsNotForIt) {
   EXPECT_EQ(error(R"("set": {"hemicube": 7})"),
             "p.json, at 0 s: a hemicube has an even number of pixels from 2 to 1024, not 7");
   EXPECT_EQ(error(R"("set": {"eps": 7})"),
-            "p.json, at 0 s: there is no setting 'eps'; there are: hemicube, pause_at");
+            "p.json, at 0 s: there is no setting 'eps'; choose from: hemicube, pause_at");
   EXPECT_EQ(error(R"("overlay": {"links": true})"),
-            "p.json, at 0 s: there is no overlay 'links'; there are: vertex, lit");
+            "p.json, at 0 s: there is no overlay 'links'; choose from: vertex, lit");
   EXPECT_NE(error(R"("select": "chair")"), "");
   EXPECT_EQ(error(R"("tool": "link")"),
             "p.json, at 0 s: hemicube radiosity has no tools; a click chooses a vertex");

@@ -27,7 +27,7 @@ template <class Names>
 Status check_name(const std::string& given, const Names& names, const char* what,
                   const std::string& where) {
   if (place_of(given, names)) return {};
-  return fail(ErrorCode::bad_input, "{}: {} '{}' is not known; there is: {}", where, what, given,
+  return fail(ErrorCode::bad_input, "{}: {} '{}' is not known; choose from: {}", where, what, given,
               all_of(names));
 }
 
@@ -153,8 +153,7 @@ Status check_desk(const Play& play, const std::string& name) {
       LUXEL_TRY_STATUS(check_name(asked->name, kAsks, "what is asked for,", where));
     if (const auto* shown = std::get_if<ShowChanged>(&timed.event);
         shown && looks_into_bake(shown->show))
-      return fail(ErrorCode::bad_input, "{}: there is no bake to look into inside of a solver",
-                  where);
+      return fail(ErrorCode::bad_input, "{}: inside a solver there is no bake to look into", where);
   }
   return {};
 }

@@ -76,10 +76,10 @@ TEST(HierarchicalDesk, RefusesWhatItDoesNotKnow) {
     return checked ? "" : checked.error().message;
   };
   EXPECT_EQ(error(R"({"at": 0.5, "overlay": {"shadows": true}})"),
-            "desk.json, at 0.5 s: the overlay 'shadows' is not known; there is: mesh, links, "
+            "desk.json, at 0.5 s: the overlay 'shadows' is not known; choose from: mesh, links, "
             "partial-links, discontinuities, triangulation, samples, error, reflectance, no-faces");
   EXPECT_THAT(error(R"({"at": 0, "do": "dance"})"),
-              HasSubstr("'dance' is not known; there is: it"));
+              HasSubstr("'dance' is not known; choose from: it"));
   EXPECT_EQ(error(R"({"at": 0, "set": {"eps": -1}})"),
             "desk.json, at 0 s: eps is from 0 to 1000000000, not -1");
   EXPECT_THAT(error(R"({"at": 0, "set": {"epsilon": 1}})"), HasSubstr("'epsilon' is not known"));

@@ -153,9 +153,7 @@ void graph_across(const Examined& examined, SelectionDesk& desk) {
   if (line)
     ask_for_graph(*line, selected_polygon(examined, desk.selected), examined, desk);
   else
-    desk.said =
-        "a graph needs an element, a triangle or a discontinuity that is selected, or a "
-        "line that is dragged";
+    desk.said = "a graph needs a selected element, triangle or discontinuity, or a dragged line";
 }
 
 void graph_along(const ToolUsed& used, const Walk& walk, const Examined& examined,

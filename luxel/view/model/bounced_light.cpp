@@ -43,8 +43,8 @@ Result<PagesOfHalves> read_after(const std::filesystem::path& folder,
   for (size_t i = 0; i < pages.pictures.size(); ++i) {
     if (!lies_alike(pages.pictures[i], lightmaps.pictures[i]))
       return fail(ErrorCode::bad_input,
-                  "the lightmap of {} does not lie as that of {}: bake both with the same options, "
-                  "but for --bounces and --output",
+                  "the lightmap of {} has another layout than that of {}: bake both with the same "
+                  "options, except for --bounces and --output",
                   of.string(), folder.string());
     out.push_back(image::to_half(pages.pictures[i]));
   }
@@ -66,8 +66,9 @@ Result<std::vector<image::Image>> part_of(const LightShown& light, const Bounced
                                           std::span<const image::Image> all) {
   const size_t known = bounced.after.size(), needed = light.most ? *light.most + 1 : light.fewest;
   if (needed > known)
-    return fail(ErrorCode::bad_setting, "light of {} reflections is not told apart; it is up to {}",
-                needed - 1, known - 1);
+    return fail(ErrorCode::bad_setting,
+                "light of {} bounces is not known separately, only up to {}", needed - 1,
+                known - 1);
   std::vector<image::Image> out;
   for (size_t page = 0; page < all.size(); ++page) {
     out.push_back(light.most ? to_floats(bounced.after[*light.most][page]) : all[page]);
@@ -87,21 +88,20 @@ Result<BouncedLight> read_bounced(const std::filesystem::path& folder,
     out.after.push_back(std::move(pages));
   }
   if (out.after.empty())
-    return fail(
-        ErrorCode::bad_input,
-        "{0} has all light in one; `luxel bake SCENE -o {0}/bounces-0 --bounces 0`, with the "
-        "other options of that bake, makes its direct light, bounces-1 that after one "
-        "reflection, and so on",
-        folder.string());
+    return fail(ErrorCode::bad_input,
+                "{0} has all bounces in one; `luxel bake SCENE -o {0}/bounces-0 --bounces 0`, with "
+                "the other options of that bake, makes its direct light, the same with 1 for 0 the "
+                "light after one bounce, and so on",
+                folder.string());
   return out;
 }
 
 std::string words_of(const LightShown& light) {
   for (const PartName& part : kParts)
     if (part.light == light) return part.words;
-  if (!light.most) return fmt::format("after {} reflections and more", light.fewest);
-  if (light.fewest == *light.most) return fmt::format("of reflection {} alone", *light.most);
-  return fmt::format("up to {} reflection{}", *light.most, *light.most == 1 ? "" : "s");
+  if (!light.most) return fmt::format("after {} or more bounces", light.fewest);
+  if (light.fewest == *light.most) return fmt::format("of bounce {} only", *light.most);
+  return fmt::format("up to {} bounce{}", *light.most, *light.most == 1 ? "" : "s");
 }
 
 }  // namespace luxel::view

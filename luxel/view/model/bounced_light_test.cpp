@@ -51,7 +51,7 @@ TEST(BouncedLight, IsNoLessThanNothing) {
 TEST(BouncedLight, SaysWhatIsNotToldApart) {
   const Halving h;
   EXPECT_EQ(part_of({0, 3}, h.bounced, h.all).error().message,
-            "light of 3 reflections is not told apart; it is up to 2");
+            "light of 3 bounces is not known separately, only up to 2");
   EXPECT_FALSE(part_of({4, std::nullopt}, h.bounced, h.all));
   const auto none = read_bounced(::testing::TempDir() + "no_bounces", {});
   EXPECT_THAT(none.error().message, HasSubstr("no_bounces/bounces-0 --bounces 0`"));
@@ -62,8 +62,8 @@ TEST(BouncedLight, HasWordsForEachPart) {
   EXPECT_EQ(words_of({0, 0}), "direct");
   EXPECT_EQ(words_of({1, std::nullopt}), "indirect");
   EXPECT_EQ(words_of({0, 1}), "up to 1 reflection");
-  EXPECT_EQ(words_of({0, 3}), "up to 3 reflections");
-  EXPECT_EQ(words_of({2, 2}), "of reflection 2 alone");
+  EXPECT_EQ(words_of({0, 3}), "up to 3 bounces");
+  EXPECT_EQ(words_of({2, 2}), "of bounce 2 only");
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ inline constexpr KeyHelp kKeys[] = {
     {"shift", "fly four times as fast; move the picture where it would turn"},
     {"f", "show what is selected, or the whole scene"},
     {"home", "back to the first view"},
-    {"o", "turn around what is looked at, or stop"},
+    {"o", "orbit what is looked at, or stop"},
     {"1", "light and colour"},
     {"2", "light alone"},
     {"3", "colour alone"},
@@ -204,8 +204,8 @@ inline constexpr KeyHelp kKeys[] = {
     {"8", "seams of the lightmap"},
     {"9", "overlaps in the lightmap"},
     {"i", "all light, direct, indirect, in turn"},
-    {",", "light of one reflection less"},
-    {".", "light of one reflection more"},
+    {",", "light of one bounce less"},
+    {".", "light of one bounce more"},
     {"b", "probes as balls, or none"},
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
@@ -213,15 +213,15 @@ inline constexpr KeyHelp kKeys[] = {
     {"ctrl+1", "remember this view as bookmark 1; as far as ctrl+9"},
     {"alt+1", "go to bookmark 1; as far as alt+9"},
     {"space", "stop the bake, or let it go on"},
-    {"ctrl+s", "save the bake, or where lamps have been moved to"},
+    {"ctrl+s", "save the bake, or the new places of lamps"},
 };
 /// Those of .lxr files.
 inline constexpr KeyHelp kLampKeys[] = {
     {"x", "move a lamp along x alone, or freely again"},
     {"y", "along y alone"},
     {"z", "along z alone"},
-    {"m", "hide the marks of lamps, or show them"},
-    {"c", "compare the light with the path tracer's, or stop that"},
+    {"m", "hide or show the marks of lamps"},
+    {"c", "compare the light with the path tracer's, or stop"},
     {"ctrl+shift+s", "save another .lxr file with the lamps as they are"},
 };
 
@@ -233,8 +233,8 @@ inline constexpr KeyHelp kHemicubeKeys[] = {
 };
 /// Those of hierarchical solutions.
 inline constexpr KeyHelp kSelectionKeys[] = {
-    {"p", "select what holds the selected element"},
-    {"c", "select its part under the place of the click"},
+    {"p", "select the parent of the selected element"},
+    {"c", "select its child at the place of the click"},
     {"n", "select the next weaker link"},
     {"g", "graph across what is selected"},
     {"esc", "select nothing"},
@@ -251,8 +251,8 @@ inline constexpr KeyHelp kEditKeys[] = {
     {"ctrl+shift+z", "redo; ctrl+y, too"},
     {"ctrl+y", "redo"},
     {"ctrl+shift+s", "save the edited scene as glTF"},
-    {"l", "relight: prepare lamps that move with all bounces of their light, or stop that"},
-    {"m", "hide the marks of lamps, or show them"},
+    {"l", "relight: prepare lamps that move with all bounces of their light, or stop"},
+    {"m", "hide or show the marks of lamps"},
 };
 
 struct TimedEvent {

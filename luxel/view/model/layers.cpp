@@ -28,8 +28,8 @@ Result<std::vector<image::Image>> read_layer(const std::filesystem::path& folder
     const image::Image& page = lightmaps.pictures[i];
     if (from.width != page.width || from.height != page.height || from.channels < 3)
       return fail(ErrorCode::bad_input,
-                  "the layer {} of {} has {} x {} pixels and the lightmap {} x {}: they are not of "
-                  "one bake",
+                  "the layer {} of {} has {} x {} pixels and the lightmap {} x {}: they belong to "
+                  "different bakes",
                   name, folder.string(), from.width, from.height, page.width, page.height);
   }
   return std::move(pages.pictures);

@@ -157,9 +157,10 @@ Result<std::vector<image::Image8>> texel_pictures(const std::filesystem::path& f
     const image::Image& from = pages.pictures[i];
     const image::Image& page = lightmaps.pictures[i];
     if (from.width != page.width || from.height != page.height)
-      return fail(ErrorCode::bad_input,
-                  "{} of {} has {} x {} pixels and the lightmap {} x {}: they are not of one bake",
-                  name, folder.string(), from.width, from.height, page.width, page.height);
+      return fail(
+          ErrorCode::bad_input,
+          "{} of {} has {} x {} pixels and the lightmap {} x {}: they belong to different bakes",
+          name, folder.string(), from.width, from.height, page.width, page.height);
     image::Image8 picture{from.width, from.height, 4, {}};
     for (const float v : from.data) picture.data.push_back(uint8_t(std::lround(v * 255)));
     out.push_back(without_white_rim(picture));
@@ -197,7 +198,7 @@ std::optional<std::string> missing_for(Show show, const Look& look, const std::s
   const std::string file = is_texels ? "texels.png" : "error.png";
   const std::string option = is_texels ? "--texels" : "--error-map";
   if (folder.empty())
-    return fmt::format("{} is a file of bakes with {}; look at its folder", file, option);
+    return fmt::format("{} is written by bakes with {}; open the folder of one", file, option);
   return fmt::format("{}: there is no {} in it; bake with {}", folder, file, option);
 }
 

@@ -102,7 +102,7 @@ TEST(Look, SaysWhatIsMissing) {
   Look look = look_at(squares.scene, squares.lightmaps);
   EXPECT_THAT(*missing_for(Show::texels, look, "box"), HasSubstr("box: there is no texels.png"));
   EXPECT_THAT(*missing_for(Show::error, look, "box"), HasSubstr("bake with --error-map"));
-  EXPECT_THAT(*missing_for(Show::error, look, ""), HasSubstr("error.png is a file of bakes with"));
+  EXPECT_THAT(*missing_for(Show::error, look, ""), HasSubstr("error.png is written by bakes with"));
   EXPECT_FALSE(missing_for(Show::charts, look, "box"));
   look.errors.resize(1);
   EXPECT_FALSE(missing_for(Show::error, look, "box"));

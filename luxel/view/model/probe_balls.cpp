@@ -32,7 +32,7 @@ Result<ProbeBalls> read_places(const std::filesystem::path& file) {
                   out.spacing_m);
     for (const light::Probe& probe : out.probes)
       if (!is_finite(probe.position))
-        return fail(ErrorCode::bad_input, "{}: a probe stands nowhere", file.string());
+        return fail(ErrorCode::bad_input, "{}: a probe has no position", file.string());
     return out;
   } catch (const nlohmann::json::exception& e) {
     return fail(ErrorCode::bad_input, "{}: {}", file.string(), short_message(e.what(), 400));
@@ -56,8 +56,8 @@ Result<ProbeBalls> read_probes(const std::filesystem::path& folder) {
   const size_t needed = std::max<size_t>(out.probes.size(), 1);
   if (size_t(rows.width) != kSh2 || size_t(rows.height) != needed || rows.channels < 3)
     return fail(ErrorCode::bad_input,
-                "{} has {} x {} pixels, and probes.json {} probes of {} coefficients: they are not "
-                "of one bake",
+                "{} has {} x {} pixels, and probes.json {} probes of {} coefficients: they belong "
+                "to different bakes",
                 exr.string(), rows.width, rows.height, out.probes.size(), kSh2);
   for (size_t i = 0; i < out.probes.size(); ++i)
     for (size_t k = 0; k < kSh2; ++k) out.probes[i].irradiance[k] = rows.rgb(int(k), int(i));

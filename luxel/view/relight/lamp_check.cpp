@@ -109,11 +109,11 @@ std::unique_ptr<LampCheck> LampCheck::begin(OpenedLxr& opened, const Lamps& now,
 }
 
 std::string sentence_of(const pipeline::IndirectError& error, const LampCheckParams& params) {
-  if (error.places == 0) return "no texel lies outside of solids: there is nothing to compare";
+  if (error.places == 0) return "no texel lies outside solids: there is nothing to compare";
   return fmt::format(
-      "light of all bounces at {} texels is {:.1f} % off the path tracer's (root mean square over "
-      "the mean), 95 of 100 texels at most {:.1f} %; {} paths each, which are {:.1f} % off "
-      "themselves",
+      "light of all bounces at {} texels differs from the path tracer's by {:.1f} % (root mean "
+      "square over the mean), at 95 % of them by at most {:.1f} %; {} paths each, which err by "
+      "{:.1f} %",
       error.places, 100 * error.rms, 100 * error.p95, 2 * params.paths, 100 * error.noise);
 }
 

@@ -87,8 +87,8 @@ std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk) {
 Status check_lamp_event(const Event& event, const Lamps& lamps) {
   if (edits_scene(event))
     return fail(ErrorCode::bad_input,
-                "in an .lxr file lamps change, and what glows; open the scene itself to change "
-                "more");
+                "in an .lxr file only lamps and emissive materials change; open the scene itself "
+                "to change more");
   if (const auto* changed = std::get_if<LampChanged>(&event);
       changed && changed->lamp >= lamps.lamps.size())
     return fail(ErrorCode::bad_input, "there is no lamp {}; there are {}", changed->lamp,
@@ -114,8 +114,8 @@ Status check_no_lamps(const Play& play, const std::string& name) {
   for (const TimedEvent& timed : play.events)
     if (changes_lamps(timed.event) || edits_scene(timed.event))
       return fail(ErrorCode::bad_input,
-                  "{}, at {} s: this is for scenes that are baked while they are looked at, and "
-                  "lamps change in .lxr files, too; a bake that is there stays as it is",
+                  "{}, at {} s: this is for scenes that are baked while you look, or for lamps of "
+                  ".lxr files; a finished bake cannot be changed",
                   name, timed.at_s);
   return {};
 }

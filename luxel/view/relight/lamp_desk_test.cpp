@@ -188,7 +188,7 @@ TEST(LampDesk, SaysWhatOfAPlayIsWrong) {
   const Status refused = check_no_lamps(*of_a_bake, "lamps.json");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message,
-              AllOf(HasSubstr("lamps.json, at 1 s: "), HasSubstr("a bake that is there")));
+              AllOf(HasSubstr("lamps.json, at 1 s: "), HasSubstr("a finished bake")));
   for (const char* wrong :
        {R"({"at": 1, "lamp": 0, "colour": [1, 1, 1]})",
         R"({"at": 1, "lamp": 0, "to": [1, 1e30, 1]})",

@@ -90,7 +90,7 @@ class Maker : public LxrMaker {
         pipeline::write_relightable(settings, made, progress_).map([](const nlohmann::json&) {}));
     folder.keep();
     if (const Status kept = keep_lxr(scene, settings, made.warnings); !kept)
-      made.warnings.push_back("it is not used again: " + kept.error().message);
+      made.warnings.push_back("the file cannot be used again: " + kept.error().message);
     return made;
   }
 

@@ -80,7 +80,7 @@ Result<std::filesystem::path> save_lxr(const LampsToSave& to_save) {
   LUXEL_TRY(const matrix::RelightData data,
             with_lamps(*to_save.data, to_save.baked, to_save.now, from.string()));
   if (const Status can_be_kept = matrix::check(data); !can_be_kept)
-    return fail(ErrorCode::bad_input, "these lamps cannot be kept in a file: {}",
+    return fail(ErrorCode::bad_input, "these lamps cannot be stored in a file: {}",
                 can_be_kept.error().message);
   std::filesystem::path to = free_name(from.parent_path(), from.stem().string() + "-lamps", ".lxr");
   LUXEL_TRY_STATUS(write_file_atomically(to, matrix::encode_lxr(data)));

@@ -158,7 +158,7 @@ TEST_F(SavedLxr, IsNeverWrittenOver) {
   bright.now.lamps[0].light.intensity = {1e31f, 0, 0};
   const auto refused = save_lxr(bright);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message.find("these lamps cannot be kept in a file: "), 0u);
+  EXPECT_EQ(refused.error().message.find("these lamps cannot be stored in a file: "), 0u);
 }
 
 }  // namespace

@@ -20,10 +20,9 @@ Status find_bounced(ShownScene& shown) {
     return {};
   }
   return fail(ErrorCode::bad_input, "{}",
-              shown.has_light
-                  ? "the reflections of this light are not told apart; those of a scene that is "
-                    "baked by --solver gather are"
-                  : "there is no light yet");
+              shown.has_light ? "the bounces of this light are not known separately; bake the "
+                                "scene with --solver gather to see each of them"
+                              : "there is no light yet");
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ Status show_part(const LightShown& light, gpu::Commands& commands, ShownScene& s
   if (!light.is_all()) LUXEL_TRY_STATUS(find_bounced(shown));
   if (shown.device.lights[0] == shown.device.lights[1])
     return fail(ErrorCode::bad_input,
-                "the reflections were baked after {} was opened; open it again to see them",
+                "the bounces were baked after {} was opened; open it again to see them",
                 shown.folder.string());
   LUXEL_TRY(const std::vector<image::Image> pages, pages_shown(light, shown));
   std::vector<image::HalfImage> halves;

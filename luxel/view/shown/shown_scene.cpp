@@ -201,8 +201,9 @@ bool is_settled(const ShownScene& shown) { return !shown.waiting && is_free(show
 
 Result<Look> look_of(const ShownScene& shown) {
   if (shown.lightmaps.pictures.empty())
-    return fail(ErrorCode::bad_input,
-                "there is no lightmap to look into: light of .lxr files is made for each picture");
+    return fail(
+        ErrorCode::bad_input,
+        "there is no lightmap to look into: light of .lxr files is computed for each picture");
   Look out;
   if (shown.folder.empty()) {
     out = look_at(shown.drawn(), shown.lightmaps, shown.light_uv());

@@ -50,7 +50,8 @@ void register_merge(CLI::App& app, Action& action) {
       ->required();
   merge
       ->add_option("--scene", options->scene,
-                   "Scene file (default: the path given to luxel bake --part)")
+                   "Scene file (default: the path that luxel bake --part was given, from the "
+                   "current folder)")
       ->type_name("FILE");
   merge->add_option("--max-memory", options->max_memory, "Memory limit, as for luxel bake")
       ->type_name("SIZE");

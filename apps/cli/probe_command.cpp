@@ -155,7 +155,7 @@ void register_probe(CLI::App& app, Action& action) {
   auto options = std::make_shared<ProbeOptions>();
   pipeline::ProbeSettings& s = options->settings;
   probe->add_option("SCENE", s.scene, "glTF, OBJ, FBX, ... file")->required();
-  probe->add_option("--at", options->at, "Point to probe; the nearest surface counts")
+  probe->add_option("--at", options->at, "Point to probe; luxel takes the nearest surface")
       ->type_name("X,Y,Z")
       ->required();
   probe

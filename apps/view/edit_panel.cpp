@@ -53,7 +53,7 @@ void lay_out_lamp(EditPanel& panel) {
   if (panel.light.has_disc) {
     ImGui::InputTextWithHint("##sun", "azimuth,elevation", panel.sun.data(), panel.sun.size());
     ImGui::SameLine();
-    panel.asks_for_sun = ImGui::Button("stand there");
+    panel.asks_for_sun = ImGui::Button("move the sun");
     ImGui::TextUnformatted("or 2026-06-21T15:30+02:00,48.9,2.4:\ntime, latitude, longitude");
   }
   panel.deletes_lamp = ImGui::Button("delete");

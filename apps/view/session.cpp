@@ -22,8 +22,8 @@ namespace luxel::view_window {
 std::vector<KeyLine> key_lines(const Subject& subject) {
   std::vector<KeyLine> out = subject.keys();
   out.insert(out.end(), {{"left button", "turn"},
-                         {"other buttons", "move the picture"},
-                         {"wheel", "nearer, farther"},
+                         {"other buttons", "pan"},
+                         {"wheel", "closer, farther"},
                          {"f1", "this list"},
                          {"f12", "a picture of what is shown, as luxel-view-1.png"}});
   for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});

@@ -93,7 +93,7 @@ SolverPanel solver_lines(const view::Workshop& workshop, const view::Piece* piec
   const Progress::Snapshot at = workshop.snapshot();
   out.is_solving = workshop.is_solving();
   out.state = state == view::WorkshopState::failed    ? "no light"
-              : state == view::WorkshopState::at_rest ? "at rest"
+              : state == view::WorkshopState::at_rest ? "idle"
                                                       : at.stage;
   if (at.total > 0 && state == view::WorkshopState::at_work)
     out.share = float(double(at.done) / double(at.total));

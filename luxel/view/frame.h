@@ -36,8 +36,8 @@ struct ShowName {
 };
 inline constexpr std::array<ShowName, 11> kShows{{
     {"both", "1", "light and colour"},
-    {"light", "2", "light alone"},
-    {"colour", "3", "colour alone"},
+    {"light", "2", "light only"},
+    {"colour", "3", "colour only"},
     {"irradiance", "4", "irradiance in false colours"},
     {"checker", "5", "texels as squares"},
     {"density", "6", "density of texels"},

@@ -126,7 +126,7 @@ def bake(
     supersample: float | None = ...,  # Points in each texel across which direct light varies; 1: no supersampling; auto: derived from --samples (1 to 1024); 16
     bounces: Value | None = ...,  # Number of bounces, or inf; inf
     max_error: float | None = ...,  # Add rays until the relative error of the light is below this, e.g. 0.02 (0.0001 to 1)
-    error_measure: Value | None = ...,  # What --max-error limits: p95: the relative error of 95 % of the texels; rms: the root mean square error of all texels, over their mean light; p95
+    error_measure: Value | None = ...,  # What --max-error limits: p95: the relative error that 95 % of the texels stay below; rms: the root mean square error of all texels, over their mean light; p95
     time_budget: float | None = ...,  # Time for the whole bake. gather: reach the lowest error in about this many seconds, or stop at --max-error; hierarchical: refine less if time is short; all but gather exit with code 3 when time runs out
     seed: float | None = ...,  # Random seed (>= 0); 1
     directional: Value | None = ...,  # Also write how irradiance changes with the normal, for normal maps: dominant (a direction) or sh1 (spherical harmonics)

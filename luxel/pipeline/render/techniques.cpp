@@ -167,7 +167,7 @@ constexpr std::array kTechniques{
               .bakes_itself = true,
               .on_sheet = false},
     Technique{.name = "path",
-              .help = "trace paths",
+              .help = "path tracing",
               .draw = draw_paths,
               .traces_paths = true,
               .counts_bounces = true,

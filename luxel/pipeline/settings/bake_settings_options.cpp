@@ -58,10 +58,11 @@ Options<S> sampling_options() {
           "Add rays until the relative error of the light is below this, e.g. 0.02")
           .unit("ERROR")
           .only(&Can::errors),
-      BakeRows::choice("--error-measure", &S::error_measure,
-                       {{"p95", gather::ErrorMeasure::p95}, {"rms", gather::ErrorMeasure::rms}},
-                       "What --max-error limits: p95: the relative error of 95 % of the texels; "
-                       "rms: the root mean square error of all texels, over their mean light")
+      BakeRows::choice(
+          "--error-measure", &S::error_measure,
+          {{"p95", gather::ErrorMeasure::p95}, {"rms", gather::ErrorMeasure::rms}},
+          "What --max-error limits: p95: the relative error that 95 % of the texels stay below; "
+          "rms: the root mean square error of all texels, over their mean light")
           .only(&Can::errors),
       BakeRows::number(
           "--time-budget", &S::time_budget_s,

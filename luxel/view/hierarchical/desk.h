@@ -55,7 +55,7 @@ inline constexpr std::array<NamedWords, 5> kAsks{{
     {"iterate-interpolants", "refine interpolants"},
     {"converge", "all links"},
     {"converge-interpolants", "all interpolants"},
-    {"begin", "begin anew"},
+    {"begin", "start over"},
 }};
 
 /// A number that a user chooses.

@@ -184,43 +184,43 @@ struct KeyHelp {
   const char* does;
 };
 inline constexpr KeyHelp kKeys[] = {
-    {"w", "fly ahead"},
+    {"w", "fly forward"},
     {"s", "fly back"},
     {"a", "fly to the left"},
     {"d", "fly to the right"},
     {"e", "fly up"},
     {"q", "fly down"},
-    {"shift", "fly four times as fast; move the picture where it would turn"},
-    {"f", "show what is selected, or the whole scene"},
-    {"home", "back to the first view"},
-    {"o", "orbit what is looked at, or stop"},
+    {"shift", "fly four times as fast; pan instead of turning"},
+    {"f", "frame the selection, or the whole scene"},
+    {"home", "reset the view"},
+    {"o", "orbit around the point looked at, or stop"},
     {"1", "light and colour"},
-    {"2", "light alone"},
-    {"3", "colour alone"},
+    {"2", "light only"},
+    {"3", "colour only"},
     {"4", "irradiance in false colours"},
     {"5", "texels as squares"},
     {"6", "density of texels"},
     {"7", "charts of the lightmap"},
     {"8", "seams of the lightmap"},
     {"9", "overlaps in the lightmap"},
-    {"i", "all light, direct, indirect, in turn"},
-    {",", "light of one bounce less"},
-    {".", "light of one bounce more"},
-    {"b", "probes as balls, or none"},
-    {"+", "brighter by half a stop"},
-    {"-", "darker by half a stop"},
-    {"0", "as bright as at first"},
-    {"ctrl+1", "remember this view as bookmark 1; as far as ctrl+9"},
-    {"alt+1", "go to bookmark 1; as far as alt+9"},
-    {"space", "stop the bake, or let it go on"},
-    {"ctrl+s", "save the bake, or the new places of lamps"},
+    {"i", "switch between all, direct and indirect light"},
+    {",", "show one bounce less"},
+    {".", "show one bounce more"},
+    {"b", "show or hide probes as balls"},
+    {"+", "half a stop brighter"},
+    {"-", "half a stop darker"},
+    {"0", "reset the exposure"},
+    {"ctrl+1", "save this view as bookmark 1; up to ctrl+9"},
+    {"alt+1", "go to bookmark 1; up to alt+9"},
+    {"space", "pause or continue the bake"},
+    {"ctrl+s", "save the bake, or the moved lamps"},
 };
 /// Those of .lxr files.
 inline constexpr KeyHelp kLampKeys[] = {
-    {"x", "move a lamp along x alone, or freely again"},
-    {"y", "along y alone"},
-    {"z", "along z alone"},
-    {"m", "hide or show the marks of lamps"},
+    {"x", "move a lamp along x only, or freely again"},
+    {"y", "along y only"},
+    {"z", "along z only"},
+    {"m", "show or hide the marks of lamps"},
     {"c", "compare the light with the path tracer's, or stop"},
     {"ctrl+shift+s", "save another .lxr file with the lamps as they are"},
 };
@@ -229,7 +229,7 @@ inline constexpr KeyHelp kLampKeys[] = {
 inline constexpr KeyHelp kHemicubeKeys[] = {
     {"r", "radiosity per pixel"},
     {"t", "triangles of the mesh in colours"},
-    {"i", "what a vertex sees: its triangles in colours, its light, or nothing"},
+    {"i", "switch what a vertex sees: triangles in colours, light, nothing"},
 };
 /// Those of hierarchical solutions.
 inline constexpr KeyHelp kSelectionKeys[] = {
@@ -252,7 +252,7 @@ inline constexpr KeyHelp kEditKeys[] = {
     {"ctrl+y", "redo"},
     {"ctrl+shift+s", "save the edited scene as glTF"},
     {"l", "relight: prepare lamps that move with all bounces of their light, or stop"},
-    {"m", "hide or show the marks of lamps"},
+    {"m", "show or hide the marks of lamps"},
 };
 
 struct TimedEvent {

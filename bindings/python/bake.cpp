@@ -175,7 +175,7 @@ void add_arrays(py::class_<PythonBake, std::shared_ptr<PythonBake>>& type) {
                              "x, y and side of each page [texels] in texel_map, which has all.")
       .def_property_readonly(
           "texel_map", &texel_map,
-          "Which row of `texels` each place of the map has, -1 for none, (side, side).")
+          "The row of `texels` at each place of the map, -1 for none, (side, side).")
       .def_property_readonly(
           "texels", &texels,
           "A structured array of all texels: their place in the map (x, y), and the instance, "
@@ -209,7 +209,7 @@ void add_bake(py::module_& module) {
           "Estimated root mean square error over the mean light.")
       .def_property_readonly(
           "warnings", [](const PythonBake& self) { return self.bake.warnings; },
-          "What was to be told, a sentence each.")
+          "Warnings, one sentence each.")
       .def("_save", &save_files)
       .def("__repr__", [](const PythonBake& self) {
         return fmt::format("<luxel.Bake: {} x {} texels, {} of them on surfaces>",
@@ -217,7 +217,7 @@ void add_bake(py::module_& module) {
                            self.bake.map.texels.size());
       });
   module.def("bake", &bake, py::arg("scene"), py::kw_only(), py::arg("progress") = py::none(),
-             "Bakes a Scene, or the scene of a file. Options are those of `luxel bake`.");
+             "Bakes a Scene or the scene in a file, with the options of `luxel bake`.");
   module.def("_options_of_bake", &options_of_bake);
 }
 

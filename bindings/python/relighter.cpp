@@ -134,7 +134,7 @@ void check_light(const matrix::Relit& relit) {
        {&relit.direct, &relit.indirect, &relit.direct_at_points, &relit.indirect_at_points})
     for (const Rgb e : *light)
       if (!scene::is_held_light(e))
-        throw py::value_error("there is more light than can be held; lower the intensities");
+        throw py::value_error("the light is too bright to store; lower the intensities");
 }
 
 /// Fields of luxel.Relit, in their order.
@@ -159,7 +159,7 @@ py::tuple update(SharedRelighter& self, const scene::Scene& lights, const py::ob
 }
 
 void save_lxr(const SharedRelighter& self, const std::filesystem::path& path) {
-  if (path.extension() != ".lxr") throw py::value_error("the file is to end in .lxr");
+  if (path.extension() != ".lxr") throw py::value_error("the name of the file must end in .lxr");
   Status done;
   {
     const py::gil_scoped_release without_lock;
@@ -221,11 +221,10 @@ void add_patches(py::class_<SharedRelighter>& type) {
 void add_relighter(py::module_& module) {
   py::class_<SharedRelighter> type(
       module, "Relighter", py::is_final(),
-      "A scene prepared once, whose light then moves with all its bounces. "
-      "It is divided into patches.");
+      "A scene in patches, prepared once, whose light then moves with all its bounces.");
   type.def(py::init(&make), py::arg("scene"), py::kw_only(), py::arg("progress") = py::none(),
-           "Prepares a Scene or the scene of a file, or opens an .lxr file. Options are those of "
-           "`luxel relight`.")
+           "Prepares a Scene or the scene in a file, with the options of `luxel relight`, or opens "
+           "an .lxr file.")
       .def("_update", &update)
       .def("save", &save_lxr, py::arg("path"), "Writes an .lxr file.")
       .def_property_readonly(
@@ -234,7 +233,7 @@ void add_relighter(py::module_& module) {
             const std::vector<Vec3>& places = data_of(self).target.position;
             return view_of_vectors(places.data(), places.size(), self);
           },
-          "Where light is asked for besides [m], (m, 3): texels of a map, or vertices.")
+          "Places where light is computed [m], (m, 3): texels of a map, or vertices.")
       .def_property_readonly(
           "texels",
           [](const py::object& self) {
@@ -246,7 +245,7 @@ void add_relighter(py::module_& module) {
       .def_property_readonly(
           "codec_error",
           [](const SharedRelighter& self) { return self.relighter->data().codec_error; },
-          "What 95 of 100 lights lose less than by the compressed matrix, relative.");
+          "The relative loss by the compressed matrix that 95 of 100 lights stay below.");
   add_patches(type);
   module.def("_options_of_relighter", &options_of_relighter);
 }

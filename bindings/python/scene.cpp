@@ -193,8 +193,8 @@ void add_scene(py::module_& module) {
            "Adds a spot light of an intensity [W/sr]. Its cones are given by half their angles.")
       .def("add_sun", &add_sun, py::arg("direction"), py::arg("irradiance"), py::kw_only(),
            py::arg("angular_radius_deg") = 0, py::arg("name") = "",
-           "Adds light from far away, by the way it travels and the irradiance of a surface that "
-           "faces it [W/m^2].")
+           "Adds a directional light, by the direction in which it travels and the irradiance of a "
+           "surface that faces it [W/m^2].")
       .def_property(
           "background", &background,
           [](Scene& scene, const Array<float>& color) {

@@ -87,9 +87,9 @@ py::array_t<bool> occluded(const Tracer& self, const Array<float>& origins,
 }  // namespace
 
 void add_trace(py::module_& module) {
-  py::class_<Tracer>(module, "Tracer", py::is_final(),
-                     "A scene as it was when this was made, sorted for many calls of luxel.trace() "
-                     "and luxel.occluded().")
+  py::class_<Tracer>(
+      module, "Tracer", py::is_final(),
+      "A snapshot of a scene, prepared for many calls of luxel.trace() and luxel.occluded().")
       .def(py::init(&make_tracer), py::arg("scene"))
       .def("_closest_hits", &closest_hits)
       .def("_occluded", &occluded);

@@ -71,7 +71,7 @@ void raise(const Error& error) {
 
 void add_error(py::module_& module) {
   error_class() = PyErr_NewExceptionWithDoc(
-      "luxel.Error", "What luxel could not do, for which Python has no exception of its own.",
+      "luxel.Error", "An error of luxel for which Python has no exception of its own.",
       PyExc_RuntimeError, nullptr);
   if (!error_class()) throw py::error_already_set();
   module.attr("Error") = py::reinterpret_borrow<py::object>(error_class());

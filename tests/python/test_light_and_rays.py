@@ -143,7 +143,7 @@ class Relighting(unittest.TestCase):
                 luxel.Relighter(CORNELL_BOX, **options)
         with self.assertRaisesRegex(ValueError, "from 0 to 1e15"):
             self.box.update(luxel.Scene(), emission=self.dark - 1)
-        with self.assertRaisesRegex(ValueError, "more light than can be held"):
+        with self.assertRaisesRegex(ValueError, "the light is too bright to store"):
             self.light((self.above, 3 * [1e37]))
         with tempfile.TemporaryDirectory() as folder:
             pathlib.Path(folder, "other").write_text("stays")

@@ -28,7 +28,7 @@ Result<Keepers> settle_device(const BakeSettings& settings, const Keepers& keepe
   if (option.empty()) return keepers;
   const std::string why = option + " runs on the processor only";
   if (!keepers.device->is_optional)
-    return fail(ErrorCode::bad_setting, "{}; leave out that or --device", why);
+    return fail(ErrorCode::bad_setting, "{}; leave out {} or --device", why, option);
   warnings.push_back(warning_without(*keepers.device, why));
   Keepers out = keepers;
   out.device = nullptr;

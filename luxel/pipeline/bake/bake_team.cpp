@@ -22,8 +22,8 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
   if (!team) return {};
   const auto refuse = [&](const std::string& option) {
     return fail(ErrorCode::bad_setting,
-                "{} needs a single process, but {} work together; leave out that or mpirun", option,
-                team->size());
+                "{0} needs a single process, but {1} work together; leave out {0} or mpirun",
+                option, team->size());
   };
   if (!find_solver(settings.solver)->can.teams)
     return fail(ErrorCode::bad_setting,

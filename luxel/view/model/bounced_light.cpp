@@ -89,9 +89,9 @@ Result<BouncedLight> read_bounced(const std::filesystem::path& folder,
   }
   if (out.after.empty())
     return fail(ErrorCode::bad_input,
-                "{0} has all bounces in one; `luxel bake SCENE -o {0}/bounces-0 --bounces 0`, with "
-                "the other options of that bake, makes its direct light, the same with 1 for 0 the "
-                "light after one bounce, and so on",
+                "{0} holds all bounces together; to see them separately, run `luxel bake SCENE -o "
+                "{0}/bounces-0 --bounces 0` with the other options of that bake, then the same "
+                "with 1 for 0, and so on",
                 folder.string());
   return out;
 }

@@ -234,7 +234,7 @@ Status check_no_inside(const Play& play, const std::string& name) {
         std::holds_alternative<SelectionStepped>(timed.event) ||
         std::holds_alternative<GraphChanged>(timed.event))
       return fail(ErrorCode::bad_input,
-                  "{}, at {} s: this is for a look into a solver; --inside opens one", name,
+                  "{}, at {} s: this works only inside a solver; --inside opens one", name,
                   timed.at_s);
   return {};
 }

@@ -33,9 +33,9 @@ CLI::Option* add_device(CLI::App& app, std::string& text, const std::string& doe
   return app
       .add_option("--device", text,
                   does +
-                      ": cpu; gpu: a graphics card; gpu:N or gpu:TEXT: the device with this number "
-                      "or with this text in its name (luxel info --devices); auto: a graphics card "
-                      "if one can do it, else cpu")
+                      ": cpu, gpu (a graphics card), gpu:N or gpu:TEXT (the device with this "
+                      "number or with this text in its name, see luxel info --devices), or auto (a "
+                      "graphics card if one can do it, else cpu)")
       ->type_name("cpu|gpu|gpu:NAME|auto")
       ->capture_default_str();
 }

@@ -84,7 +84,7 @@ Finding look_at_disk() {
 Finding look_at_devices() {
   constexpr const char* kAbout = "graphics device";
   constexpr const char* kInstall =
-      "install its Vulkan driver; on Debian, mesa-vulkan-drivers has most of them";
+      "install a Vulkan driver; on Debian, mesa-vulkan-drivers has most of them";
   const auto devices = gpu::list_devices();
   if (!devices) return {State::lacking, kAbout, "none: " + devices.error().message, kInstall};
   std::string unusable;

@@ -166,8 +166,8 @@ Status check_profiles(const Scene& scene, const Report& report) {
       return fail(ErrorCode::bad_input, "{}: {}: its angles do not ascend", report.file, name);
     for (const float candela : p.candela)
       if (!(std::isfinite(candela) && candela >= 0))
-        return fail(ErrorCode::bad_input, "{}: {}: {} is no number of candela", report.file, name,
-                    candela);
+        return fail(ErrorCode::bad_input, "{}: {}: {} is not a number of candela", report.file,
+                    name, candela);
   }
   return {};
 }

@@ -264,7 +264,7 @@ TEST(Validate, ProfilesAreGridsOfCandela) {
   scene.profiles.push_back({"lamp.ies", LightProfile::Angles::c, {0, 1}, {0}, {5, 4}});
   EXPECT_EQ(error_of(scene), "no error");
   scene.profiles[0].candela[1] = NAN;
-  EXPECT_THAT(error_of(scene), HasSubstr("profile 0 (lamp.ies): nan is no number"));
+  EXPECT_THAT(error_of(scene), HasSubstr("profile 0 (lamp.ies): nan is not a number"));
   scene.profiles[0].candela = {5};
   EXPECT_THAT(error_of(scene), HasSubstr("1 candela for 2 x 1 angles"));
   scene.profiles[0].candela = {5, 4}, scene.profiles[0].vertical_rad = {1, 1};

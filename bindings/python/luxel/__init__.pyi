@@ -118,7 +118,7 @@ def bake(
     resolution: float | None = ...,  # Lightmap side in texels; default: as fine as the scene needs, up to about 2 million texels (1 to 16384)
     texels_per_metre: float | None = ...,  # Texel density; the lightmap side becomes the smallest power of two that fits the scene
     pages: Value | None = ...,  # Number of lightmaps; auto: as many as the density needs; mesh: one per mesh; 1
-    uv: Value | None = ...,  # Lightmap layout: keep: the file's TEXCOORD_1; unwrap: a new layout; auto: keep if it can hold the light, else unwrap; auto
+    uv: Value | None = ...,  # Lightmap layout: keep (the file's TEXCOORD_1), unwrap (a new layout), or auto (keep if it can hold the light, else unwrap); auto
     leak_repair: bool | None = ...,  # False: Do not cut charts under thin walls or move samples out of solids; True
     quality: Value | None = ...,  # Preset for --samples, --direct-samples, --supersample and --denoise where you do not set them; default: good
     samples: float | None = ...,  # Indirect rays per texel; for gather, the default comes from --quality (1 to 65535); 256
@@ -126,13 +126,13 @@ def bake(
     supersample: float | None = ...,  # Points in each texel across which direct light varies; 1: no supersampling; auto: derived from --samples (1 to 1024); 16
     bounces: Value | None = ...,  # Number of bounces, or inf; inf
     max_error: float | None = ...,  # Add rays until the relative error of the light is below this, e.g. 0.02 (0.0001 to 1)
-    error_measure: Value | None = ...,  # What --max-error limits: p95: the relative error that 95 % of the texels stay below; rms: the root mean square error of all texels, over their mean light; p95
+    error_measure: Value | None = ...,  # What --max-error limits: p95 (the relative error that 95 % of the texels stay below) or rms (the root mean square error of all texels, over their mean light); p95
     time_budget: float | None = ...,  # Time for the whole bake. gather: reach the lowest error in about this many seconds, or stop at --max-error; hierarchical: refine less if time is short; all but gather exit with code 3 when time runs out
     seed: float | None = ...,  # Random seed (>= 0); 1
     directional: Value | None = ...,  # Also write how irradiance changes with the normal, for normal maps: dominant (a direction) or sh1 (spherical harmonics)
     probes: float | None = ...,  # Also write light probes on a grid of this spacing in metres
     layers: Value | None = ...,  # Also write a lightmap for each light (per-light), or for each group of lights whose names differ only in a trailing number (groups)
-    light: Value | None = ...,  # Light in the lightmap: all; direct; indirect: light that has bounced at least once; no-punctual: all but the direct light of point, spot and directional lights, for engines that add it themselves; all
+    light: Value | None = ...,  # Light in the lightmap: all, direct, indirect (bounced at least once), or no-punctual (all but the direct light of point, spot and directional lights, for engines that add it themselves); all
     shadow_mask: Value | None = ...,  # Also write shadow-mask.png and .exr: how much each texel sees of up to four point, spot or directional lights; auto: the first four
     ambient_occlusion: Value | None = ...,  # Also write ambient-occlusion.png and .exr: the share of directions that nothing blocks within this distance in metres, or inf
     denoise: bool | None = ...,  # Denoise the light, and keep shadow edges
@@ -166,7 +166,7 @@ def bake(
     discontinuities: bool | None = ...,  # False: Do not mesh along shadow edges; True
     max_leaf_lines: float | None = ...,  # Largest number of shadow edges through an element (0 to 1000); 10
     min_weight: float | None = ...,  # Leave out shadow edges across which light changes by less than this, in W/m^2 per m, or in W/m^2 with --ranking nearness (default: from the light in the scene)
-    ranking: Value | None = ...,  # How to rank shadow edges: slope: by how much light changes per metre; nearness: by how close the blocker is to the surface; slope
+    ranking: Value | None = ...,  # How to rank shadow edges: slope (by how much light changes per metre) or nearness (by how close the blocker is to the surface); slope
     # end: bake
 ) -> Bake: ...
 
@@ -187,7 +187,7 @@ class Relighter:
         target: Value | None = ...,  # Where to compute light: texels of a lightmap, vertices, or none; texels
         resolution: float | None = ...,  # Lightmap side in texels (1 to 16384); 256
         texels_per_metre: float | None = ...,  # Texel density; the lightmap side becomes the smallest power of two that fits the scene
-        uv: Value | None = ...,  # Lightmap layout: keep: the file's TEXCOORD_1; unwrap: a new layout; auto: keep if it can hold the light, else unwrap; auto
+        uv: Value | None = ...,  # Lightmap layout: keep (the file's TEXCOORD_1), unwrap (a new layout), or auto (keep if it can hold the light, else unwrap); auto
         patches: float | None = ...,  # Approximate number of patches (1 to 1048576); 8192
         rays: float | None = ...,  # Rays per patch to estimate its form factors (1 to 65535); 8192
         codec: Value | None = ...,  # Codec that compresses the matrix: hierarchical, lowrank, bc1, dense32, dense16; hierarchical

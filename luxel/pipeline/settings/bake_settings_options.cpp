@@ -61,8 +61,8 @@ Options<S> sampling_options() {
       BakeRows::choice(
           "--error-measure", &S::error_measure,
           {{"p95", gather::ErrorMeasure::p95}, {"rms", gather::ErrorMeasure::rms}},
-          "What --max-error limits: p95: the relative error that 95 % of the texels stay below; "
-          "rms: the root mean square error of all texels, over their mean light")
+          "What --max-error limits: p95 (the relative error that 95 % of the texels stay below) or "
+          "rms (the root mean square error of all texels, over their mean light)")
           .only(&Can::errors),
       BakeRows::number(
           "--time-budget", &S::time_budget_s,
@@ -129,9 +129,9 @@ Options<S> result_options() {
                         {"direct", LightPart::direct},
                         {"indirect", LightPart::indirect},
                         {"no-punctual", LightPart::no_punctual}},
-                       "Light in the lightmap: all; direct; indirect: light that has bounced at "
-                       "least once; no-punctual: all but the direct light of point, spot and "
-                       "directional lights, for engines that add it themselves")
+                       "Light in the lightmap: all, direct, indirect (bounced at least once), or "
+                       "no-punctual (all but the direct light of point, spot and directional "
+                       "lights, for engines that add it themselves)")
           .never_without(&Can::direct),
       BakeRows::text(
           "--shadow-mask", &S::shadow_mask, parse_shadow_mask,

@@ -12,8 +12,8 @@ Options<BakeSettings> bake_settings_options();
 
 /// Options that other commands share with a bake.
 inline constexpr std::string_view kUvHelp =
-    "Lightmap layout: keep: the file's TEXCOORD_1; unwrap: a new layout; auto: keep if it can hold "
-    "the light, else unwrap";
+    "Lightmap layout: keep (the file's TEXCOORD_1), unwrap (a new layout), or auto (keep if it can "
+    "hold the light, else unwrap)";
 inline constexpr std::string_view kViewHelp =
     "Viewpoint of the picture: interior, exterior, front (looking along -Z), top, or a camera of "
     "the scene; default: its first camera, else interior for lit rooms and exterior for other "

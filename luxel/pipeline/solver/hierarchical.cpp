@@ -112,8 +112,8 @@ Options<HierarchicalSettings> hierarchical_options() {
       R::choice(
           "--ranking", [](auto& s) -> auto& { return s.mesh.discontinuity.ranking; },
           {{"slope", hierarchical::Ranking::slope}, {"nearness", hierarchical::Ranking::nearness}},
-          "How to rank shadow edges: slope: by how much light changes per metre; nearness: by how "
-          "close the blocker is to the surface"),
+          "How to rank shadow edges: slope (by how much light changes per metre) or nearness (by "
+          "how close the blocker is to the surface)"),
   };
 }
 

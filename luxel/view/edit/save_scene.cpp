@@ -118,7 +118,7 @@ Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
   std::error_code error;
   std::filesystem::create_directories(settings.output, error);
   if (error)
-    return fail(ErrorCode::io, "{} cannot be made: {}", settings.output.string(), error.message());
+    return fail(ErrorCode::io, "cannot create {}: {}", settings.output.string(), error.message());
   const std::filesystem::path to =
       free_name(settings.output, settings.scene.stem().string() + "-edited",
                 is_gltf ? settings.scene.extension().string() : ".glb");

@@ -341,7 +341,7 @@ TEST(EditTools, SaysWhatIsNotThere) {
        {R"({"at": 0, "instance": "near", "size": 3})", R"({"at": 0, "lamp": 0, "sun": "noon"})",
         R"({"at": 0, "material": "lower", "reflectance": [2, 0, 0]})",
         R"({"at": 0, "lamp": 0, "deleted": false})", R"({"at": 0, "lamp": 0, "cone_deg": 100})"})
-    EXPECT_THAT(said(wrong), HasSubstr("is no event")) << wrong;
+    EXPECT_THAT(said(wrong), HasSubstr("is not an event")) << wrong;
 }
 
 // A turn of 90 degrees about y takes x to -z; typed numbers come back as they were typed.

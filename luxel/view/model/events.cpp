@@ -208,7 +208,7 @@ Result<Play> parse_play(std::string_view text, const std::string& name) {
       const auto at = from.at("at").get<double>();
       const auto event = event_of(from);
       if (!event)
-        return fail(ErrorCode::bad_input, "{}, event {}: {} is no event", name, number,
+        return fail(ErrorCode::bad_input, "{}, event {}: {} is not an event", name, number,
                     short_message(from.dump(-1, ' ', true, json::error_handler_t::replace)));
       if (!(at >= last && at <= out.end_s))
         return fail(ErrorCode::bad_input, "{}, event {}: its time, {}, is not from {} to {}", name,

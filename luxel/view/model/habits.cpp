@@ -123,7 +123,7 @@ Status write_habits(const Habits& habits, const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   if (error)
-    return fail(ErrorCode::io, "{}: the folder cannot be made: {}", file.parent_path().string(),
+    return fail(ErrorCode::io, "{}: cannot create the folder: {}", file.parent_path().string(),
                 error.message());
   const OutputFile text = text_file(file, json_of(habits));
   return write_file_atomically(text.path, text.bytes);

@@ -195,7 +195,7 @@ TEST(LampDesk, SaysWhatOfAPlayIsWrong) {
         R"({"at": 1, "lamp": 0, "direction": [0, 0, 0]})", R"({"at": 1, "new_lamp": "candle"})",
         R"({"at": 1, "lamp": 0, "intensity": [1, -1, 1]})",
         R"({"at": 1, "material": "glass", "radiance": [1, 1, -1]})"})
-    EXPECT_THAT(error(wrong), HasSubstr("is no event")) << wrong;
+    EXPECT_THAT(error(wrong), HasSubstr("is not an event")) << wrong;
 }
 
 // Brighter by as much as its glow is; a material that did not glow has its glow.

@@ -161,7 +161,7 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--fov-deg", s.fov_deg, "Vertical field of view (1 to 170)")
       ->needs(eye)
       ->check(CLI::Range(1.0, 170.0).description(""))
-      ->type_name("DEGREES")
+      ->type_name("DEG")
       ->capture_default_str();
   render
       ->add_option("--size", options->size,

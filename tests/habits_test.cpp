@@ -246,7 +246,7 @@ TEST_F(OptionFiles, SayWhatIsWrongAndWhere) {
         std::pair{"[bake]\nview = \"\"\n", "line 2: view is empty"},
         std::pair{"[bake]\nmax-memory = \"1000G\"\n", "or in a file given by --settings"},
         std::pair{"[bake]\nsamples = 0\n", "--samples 0 is outside 1 to"},
-        std::pair{"[baek]\nsamples = 3\n", "'baek' that reads this file; did you mean 'bake'?"},
+        std::pair{"[baek]\nsamples = 3\n", "'baek' reads this file; did you mean 'bake'?"},
         std::pair{"[merge]\nmax-memory = 3\n", "no command 'merge' reads this file"},
         std::pair{"samples = 3\n", "'samples' is outside any table"},
         std::pair{"[bake\n", "luxel.toml, line 1: "},

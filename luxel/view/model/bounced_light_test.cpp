@@ -61,7 +61,7 @@ TEST(BouncedLight, HasWordsForEachPart) {
   EXPECT_EQ(words_of({}), "all light");
   EXPECT_EQ(words_of({0, 0}), "direct");
   EXPECT_EQ(words_of({1, std::nullopt}), "indirect");
-  EXPECT_EQ(words_of({0, 1}), "up to 1 reflection");
+  EXPECT_EQ(words_of({0, 1}), "up to 1 bounce");
   EXPECT_EQ(words_of({0, 3}), "up to 3 bounces");
   EXPECT_EQ(words_of({2, 2}), "of bounce 2 only");
 }

@@ -187,7 +187,7 @@ TEST(Probe, RefusesWhatCannotBe) {
   for (const auto& [options, sentence] :
        {std::pair{"--at 1,2", "--at '1,2' is not a point"},
         std::pair{"--at 50,0,0", "no surface within"},
-        std::pair{"--at 0,0,0 --normal 0,0,0", "is no direction"},
+        std::pair{"--at 0,0,0 --normal 0,0,0", "is not a direction"},
         std::pair{"--at 0,0,0 -o x.jpg", "must end in .png"},
         std::pair{"--at 0,0,0 -o x.png", "--solver hierarchical"},
         std::pair{"--at 0,0,0 --eps 1", "does not use --eps"},

@@ -116,7 +116,7 @@ TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
   };
   const std::string bake = "bake " + box + " -o " + folder_.string();
   for (const char* text : {"3", "0/4", "5/4", "1/x", "/", "-1/4"})
-    EXPECT_THAT(error(bake + " --part " + text), HasSubstr("is no part of a bake"));
+    EXPECT_THAT(error(bake + " --part " + text), HasSubstr("is not a part of a bake"));
   for (const std::string other : {"--keep", "--time-budget 5"})
     EXPECT_THAT(error(bake + " --part 1/2 " + other), HasSubstr("cannot be combined with"));
   EXPECT_THAT(error(bake + " --part 1/2 --solver hemicube"), HasSubstr("does not use --part"));
@@ -131,7 +131,7 @@ TEST_F(BakesInParts, AreRefusedWhereTheyCannotBe) {
   const std::string to = " -o " + (scratch_.path / "x").string();
   EXPECT_THAT(error("merge " + scratch_.path.string() + to), HasSubstr("has no parts of a bake"));
   ASSERT_EQ(shell("mkfifo " + (folder_ / "part-9-of-9.luxel").string()).code, 0);
-  EXPECT_THAT(error("merge " + folder_.string() + to), HasSubstr("is no file on a disk"));
+  EXPECT_THAT(error("merge " + folder_.string() + to), HasSubstr("is not a file on a disk"));
   fs::remove(folder_ / "part-9-of-9.luxel");
   EXPECT_THAT(error("merge " + scene_file("office.glb") + to), HasSubstr("is damaged at byte 0"));
   EXPECT_THAT(error("merge " + folder_.string() + to + " --scene " + scene_file("office.glb")),

@@ -292,7 +292,7 @@ TEST(View, SaysWhatIsWrong) {
                 .code,
             0);
   EXPECT_THAT(error((s.path / "baked").string(), 1, "env -u DISPLAY -u WAYLAND_DISPLAY"),
-              HasSubstr("there is no display to open a window on; draw without a window by"));
+              HasSubstr("there is no display to open a window on; draw without a window with"));
   const std::string play = s.write("play.json", "{}").string();
   EXPECT_THAT(error("bake" + shot + " --play " + play, 1), HasSubstr("play.json: "));
   EXPECT_THAT(error("bake --device nonesuch" + shot, 1),
@@ -304,7 +304,7 @@ TEST(View, SaysWhatIsWrong) {
               HasSubstr("there is no texels.png in it; bake with --texels"));
   s.write("baked/error.png", slurp(std::filesystem::path(baked) / "preview.png"));
   EXPECT_THAT(error(baked + shot + " --play " + texels, 1),
-              HasSubstr("720 pixels and the lightmap 16 x 16: they are not of one bake"));
+              HasSubstr("720 pixels and the lightmap 16 x 16: they belong to different bakes"));
   EXPECT_THAT(error((s.path / "absent.glb").string() + shot, 1),
               HasSubstr("no scene and no bake named " + (s.path / "absent.glb").string()));
   EXPECT_THAT(error(s.path.string() + shot, 1), HasSubstr("it has no baked.glb"));

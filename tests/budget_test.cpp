@@ -158,7 +158,7 @@ TEST(TimeBudget, EndsSolversThatCannotEndEarlier) {
     const CommandResult r = luxel(box(s, "--time-budget 0.001 --solver " + solver));
     EXPECT_EQ(r.code, 3) << solver << r.err;
     EXPECT_THAT(r.err, HasSubstr("--time-budget 0.001 ran out in the stage"));
-    EXPECT_THAT(r.err, HasSubstr("--solver " + solver + " has no result before its end"));
+    EXPECT_THAT(r.err, HasSubstr("before --solver " + solver + " had a result"));
     EXPECT_FALSE(std::filesystem::exists(s.path / "out"));
   }
   const ScratchFolder s;

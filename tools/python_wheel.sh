@@ -20,7 +20,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$root/bindings/python"  # nothing is written here
 cp -r luxel pyproject.toml setup.py "$work"
 cp "$root/LICENSE" "$work"
-# The notice of what is compiled in, with the texts that it names: setuptools takes such names.
+# The notice of what is compiled in, and the texts that it names.
 three=$built/../web/node_modules/three/LICENSE
 [ -e "$built/../web/made_from" ] || three=
 python3 "$root/tools/package/make_notices.py" python3-luxel "$work/NOTICE" ${three:+"$three"}

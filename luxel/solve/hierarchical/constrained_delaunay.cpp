@@ -286,7 +286,6 @@ void DelaunayMesh::cut_ear(uint32_t u, uint32_t v, uint32_t w) {
     const uint32_t edge = last_half(h), twin = halves_[edge].twin;
     if (turn(to(h), apex(h), apex(twin)) > 0) {
       flip(edge);
-      doubtful_.push_back(edge);
       h = half_between(v, u);
     } else {
       h = twin;

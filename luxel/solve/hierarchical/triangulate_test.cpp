@@ -143,8 +143,8 @@ TEST(Triangulate, LinesBecomeEdges) {
 }
 
 TEST(Triangulate, NearPointsBecomeOneAndFlatTrianglesNone) {
-  // (1, -1e-12) bulges out of the lower edge, and a line ends 1e-12 beside a corner.
-  const std::array<DVec2, 5> outline{DVec2{0, 0}, {1, -1e-12}, {2, 0}, {2, 1}, {0, 1}};
+  // Outside of (1, 1e-12) the hull has a flat triangle, and a line ends 1e-12 beside a corner.
+  const std::array<DVec2, 5> outline{DVec2{0, 0}, {1, 1e-12}, {2, 0}, {2, 1}, {0, 1}};
   const std::array<Segment2, 2> lines{Segment2{{1e-12, 1e-12}, {2, 1}}, {{1, 0}, {1, 1}}};
   const Triangulation t = triangulate(outline, lines, 1e-9);
   EXPECT_EQ(t.points.size(), 7u);  // five, (1, 1), and the crossing
@@ -311,7 +311,7 @@ TEST(ConstrainedDelaunay, EndsWhateverTheNumbers) {
     for (const auto& c : t.triangles)
       EXPECT_EQ(orientation(t.points[c[0]], t.points[c[1]], t.points[c[2]]), 1);
     for (const DVec2 p : t.points) EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
-    EXPECT_LE(t.points.size(), problem.points.size() + 25 * 25);
+    EXPECT_LE(t.points.size(), problem.points.size() + 25 * 24 / 2) << "lines cross once";
   }
 }
 

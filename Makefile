@@ -1,8 +1,10 @@
 # Short names for the few commands that everybody needs. CMakePresets.json has the details.
 #
-#   make demo    installs what is missing, builds, bakes the Cornell box
-#   make test    installs what is missing, builds, runs the tests
+#   make         installs missing packages, builds luxel and luxel-view
+#   make demo    the same, and bakes the Cornell box
+#   make test    installs missing packages, builds everything, runs the tests
 #   make test-all   the tests, and those of tests/only_in_test_all.txt
+#   make luxel-bench  the program behind `luxel bench`
 #   make python  the Python module, build/release/python, and a wheel of it, build/release/wheel
 #   make package  the .deb files of Debian, build/release/packages (docs/guide/install.md)
 #   make docs    checks the pages: links, widths, sentences, commands, options, generated pages; makes
@@ -22,7 +24,11 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs setup-package build python package test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
+# More arguments for configuring: .ci/run gives -DLUXEL_WERROR=ON.
+CONFIGURE ?=
+
+.DEFAULT_GOAL := all
+.PHONY: all luxel-bench setup setup-tests setup-docs setup-package build python package test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -40,8 +46,16 @@ setup-package:
 	@tools/setup.sh package
 
 build: setup
-	cmake --preset release
-	cmake --build --preset release --parallel $(JOBS) --target luxel
+	cmake --preset release $(CONFIGURE)
+	cmake --build --preset release --parallel $(JOBS) --target luxel luxel-view
+
+all: build
+	@echo
+	@echo "Built build/release/bin/luxel and build/release/bin/luxel-view. Next: make demo, or"
+	@echo "  build/release/bin/luxel bake scenes/cornell-box.glb -o baked/cornell-box"
+
+luxel-bench: build
+	cmake --build --preset release --parallel $(JOBS) --target luxel-bench
 
 python: build
 	cmake --build --preset release --parallel $(JOBS) --target luxel_python
@@ -49,12 +63,12 @@ python: build
 	  $$(sed -n 's/^_Python3_EXECUTABLE:INTERNAL=//p' build/release/CMakeCache.txt)
 
 package: setup setup-package
-	cmake --preset release
+	cmake --preset release $(CONFIGURE)
 	cmake --build --preset release --parallel $(JOBS) --target packages
 	@ls build/release/packages/*.deb
 
 test: setup-tests
-	cmake --preset release
+	cmake --preset release $(CONFIGURE)
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $$(nproc) --label-exclude thorough --output-junit tests.xml
 
@@ -67,38 +81,39 @@ ray-queries:
 	  ctest --preset release --parallel $$(nproc) -R '/driver|RayQueries|HierarchiesOnDevice|FirstHitsOnDevice'
 
 test-all: setup-tests
-	cmake --preset release
+	cmake --preset release $(CONFIGURE)
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $$(nproc)
 
 demo: build
 	$(LUXEL) bake scenes/cornell-box.glb -o baked/cornell-box --resolution 256 --samples 512
 	@echo
-	@echo "Open baked/cornell-box/preview.png; baked/cornell-box/baked.glb goes into any glTF viewer."
-	@echo "Walk about in it: build/release/bin/luxel-view baked/cornell-box"
+	@echo "A picture of the bake:  baked/cornell-box/preview.png"
+	@echo "Walk about in it:       build/release/bin/luxel-view baked/cornell-box"
+	@echo "For any glTF viewer:    build/release/bin/luxel bake scenes/cornell-box.glb -o baked/viewer --attach combined"
 
 # docs/options.md is made by tools/make_options_page.py, docs/bench/benchmarks.md by
 # tools/make_bench_page.py from the .csv files beside it.
-docs: build setup-docs
+docs: luxel-bench setup-docs
 	tools/make_options_page.py $(LUXEL) --check
 	tools/make_options_page.py $(LUXEL) --names > build/option_names.txt
 	tools/check_pages.py --options build/option_names.txt
 	tools/make_bench_page.py --check
 	tools/check_api.py --pages build/api
 
-bench: build
+bench: luxel-bench
 	$(LUXEL) bench all
 
 # The fast tests under AddressSanitizer and UndefinedBehaviorSanitizer. Leak detection stays on:
 # neither Embree nor TBB needs a suppression.
 asan: setup-tests
-	cmake --preset asan
+	cmake --preset asan $(CONFIGURE)
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)
 
 # The fast tests under ThreadSanitizer: once before each release.
 tsan: setup-tests
-	cmake --preset tsan
+	cmake --preset tsan $(CONFIGURE)
 	cmake --build --preset tsan --parallel $(JOBS)
 	ctest --preset tsan --parallel $$(nproc)
 
@@ -106,7 +121,7 @@ tsan: setup-tests
 FUZZ_SECONDS ?= 60
 fuzz:
 	@tools/setup.sh fuzz
-	cmake --preset fuzz
+	cmake --preset fuzz $(CONFIGURE)
 	cmake --build --preset fuzz --parallel $(JOBS) --target luxel_fuzz
 	tools/fuzz.sh $(FUZZ_SECONDS) $(TARGET)
 

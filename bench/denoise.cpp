@@ -15,7 +15,7 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kResolution = 128;
+constexpr int kDenoiseResolution = 128;
 /// The reference: this many bakes of this many samples, of other seeds; its own error is a third of
 /// that of the last row.
 constexpr int kReferenceBakes = 8, kReferenceSamples = 1024;
@@ -45,7 +45,7 @@ Result<std::vector<Rgb>> reference_of(const validate::Prepared& p, Progress& pro
 
 Status measure(const std::string& name, scene::Scene scene, Table& table) {
   Progress progress;
-  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kResolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kDenoiseResolution, progress));
   LUXEL_TRY(const std::vector<Rgb> reference, reference_of(*p, progress));
   for (const int samples : kSamples) {
     const pipeline::BakeSettings settings = settings_of(samples, 1);
@@ -121,7 +121,7 @@ Result<Table> measure_denoise(const std::filesystem::path& shared, int threads) 
   table.notes.push_back(
       fmt::format("{0} x {0} texels, a quarter as many shadow rays as samples; "
                   "against the mean of {1} bakes of {2} samples.",
-                  kResolution, kReferenceBakes, kReferenceSamples));
+                  kDenoiseResolution, kReferenceBakes, kReferenceSamples));
   LUXEL_TRY_STATUS(measure_large(table));
   return table;
 }

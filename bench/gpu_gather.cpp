@@ -18,7 +18,7 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kResolution = 512;
+constexpr int kGatherResolution = 512;
 constexpr int kSweeps = 5;  ///< on the processor
 /// Sweeps on the device, which also raise the clock of an idle one for the rays after them.
 constexpr double kSecondsOfSweeps = 0.4;
@@ -113,7 +113,7 @@ void add_row(const std::string& scene, const Measured& m, Table& table) {
 Status measure_gather_in(const std::string& name, scene::Scene loaded, const gpu::Device& device,
                          Table& table) {
   Progress progress;
-  LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), kResolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(loaded), kGatherResolution, progress));
   if (p->tracer->has_tints()) {
     table.notes.push_back(name + " is left out: the device knows no coloured glass");
     return {};

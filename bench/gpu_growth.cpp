@@ -12,7 +12,7 @@ namespace luxel::bench {
 namespace {
 
 constexpr size_t kRays = size_t(1) << 22;
-constexpr int kRounds = 5;
+constexpr int kGrowthRounds = 5;
 
 /// `copies` spheres of 20 * 4^levels triangles each, in a cube of the side 10.
 scene::Scene spheres(int levels, int copies) {
@@ -54,7 +54,7 @@ Status add_scene(const scene::Scene& scene, const gpu::Device& device, Table& ta
   double device_s = INFINITY, processor_s = INFINITY;
   LUXEL_TRY(const trace::RayTracer on_processor, trace::RayTracer::build(scene));
   std::vector<trace::Hit> hits(rays.size());
-  for (int k = 0; k < kRounds; ++k) {
+  for (int k = 0; k < kGrowthRounds; ++k) {
     LUXEL_TRY(const double seconds, tracer.closest_hits(there));
     device_s = std::min(device_s, seconds);
     start = Clock::now();

@@ -10,7 +10,7 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kRounds = 3, kLamps = 20;
+constexpr int kLayerRounds = 3, kLamps = 20;
 
 /// A lamp of the room's grid, 5 x 4: twelve points, four spots and four panels.
 void add_lamp(scene::Scene& scene, int k, uint32_t panel) {
@@ -90,7 +90,7 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
     settings.threads = threads;
     // Both bakes in turn.
     TimedFiles alone, layered;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kLayerRounds; ++round) {
       settings.output = folder.path / "one", settings.layers = light::LayerMode::none;
       LUXEL_TRY_STATUS(time_again(settings, alone));
       settings.output = folder.path / "all", settings.layers = light::LayerMode::per_light;
@@ -115,7 +115,7 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
       "A room of 8 x 6.4 m with 16 lamps and 4 panels, 256 samples, all bounces, files included. "
       "Seconds are the best of {} rounds in turn. The error is that of the largest channel of all "
       "texels, relative to the lightmap's value or, where that is smaller, to its mean.",
-      kRounds));
+      kLayerRounds));
   return table;
 }
 

@@ -30,7 +30,7 @@ namespace {
 using validate::Claim;
 
 constexpr int kScenes = 100, kResolution = 32, kShadowRays = 16;
-constexpr int kSamples = 64, kReferencePaths = 256;
+constexpr int kStatedSamples = 64, kReferencePaths = 256;
 constexpr double kMaxError = 0.05;
 /// Two million paths in the last: enough for a point of a millionth of the mean light.
 constexpr int kProbeRounds = 10;
@@ -41,7 +41,7 @@ constexpr const char *kProbe = "probe", *kRelight = "relight", *kFactors = "fact
 /// Settings of every solver that let a scene take about a second of one core.
 pipeline::BakeSettings small_settings(const JudgedScene& s, std::string_view solver) {
   pipeline::BakeSettings out;
-  out.samples = solver == "reference" ? kReferencePaths : kSamples;
+  out.samples = solver == "reference" ? kReferencePaths : kStatedSamples;
   out.direct_samples = kShadowRays, out.seed = 7;
   auto& hemicube = out.own.of<hemicube::HemicubeParams>();
   hemicube.resolution = 64, hemicube.max_elements = 500;
@@ -193,7 +193,7 @@ std::string introduction(uint64_t first_seed) {
       "over its mean, for the scene's lights and for point lights; the truth is the path tracer. A "
       "light that comes later stands no closer to a surface than a patch is wide.\n"
       "- `luxel compare` states no error.\n\n",
-      kScenes, first_seed, validate::kEstimateFactor, kResolution, kResolution, kSamples,
+      kScenes, first_seed, validate::kEstimateFactor, kResolution, kResolution, kStatedSamples,
       kShadowRays, kReferencePaths, 500, 64, kPathsEach, 64 * 2048);
 }
 

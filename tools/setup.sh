@@ -42,11 +42,14 @@ wanted=()
 for tool in node:nodejs npm:npm; do
   command -v "${tool%%:*}" >/dev/null || wanted+=("${tool##*:}")
 done
+# A driver for the window, on the processor where there is no graphics card.
+compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || wanted+=(mesa-vulkan-drivers)
 if [[ ${1:-} == package || ${1:-} == tests ]]; then
   command -v dpkg-shlibdeps >/dev/null || wanted+=(dpkg-dev)
   command -v file >/dev/null || wanted+=(file)
 fi
 if [[ ${1:-} == tests ]]; then
+  command -v clang++ >/dev/null || wanted+=(clang)
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
@@ -64,8 +67,7 @@ if [[ ${1:-} == tests ]]; then
   # Bakes on clusters, which luxel has where it is built with them.
   command -v mpirun >/dev/null || wanted+=(openmpi-bin)
   command -v mpicc >/dev/null || wanted+=(libopenmpi-dev)
-  # A graphics device without a graphics card, and who watches how it is used.
-  compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || wanted+=(mesa-vulkan-drivers)
+  # The layer that checks how a graphics device is used.
   compgen -G '/usr/share/vulkan/explicit_layer.d/*validation*.json' >/dev/null ||
     wanted+=(vulkan-validationlayers)
 fi
@@ -81,15 +83,15 @@ if [[ ${#missing[@]} -eq 0 && ${#wanted[@]} -eq 0 ]]; then
 fi
 
 as_root=(env)
-if [[ $(id -u) -ne 0 ]]; then
-  if ! command -v sudo >/dev/null; then
-    echo "setup: not root and no sudo; as root: apt-get install ${missing[*]} ${wanted[*]}" >&2
-    # Without the wanted ones luxel builds.
+[[ $(id -u) -eq 0 ]] || as_root=(sudo env)
+for tool in apt-get $([[ $(id -u) -eq 0 ]] || echo sudo); do
+  if ! command -v "$tool" >/dev/null; then
+    echo "setup: packages are missing, and there is no $tool to install them: ${missing[*]} ${wanted[*]}" >&2
+    # luxel builds without the wanted ones.
     [[ ${#missing[@]} -eq 0 ]]
     exit
   fi
-  as_root=(sudo env)
-fi
+done
 
 # Through env, because sudo drops the variable.
 install() {
@@ -97,8 +99,9 @@ install() {
   "${as_root[@]}" apt-get update -q &&
     "${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"
 }
-if [[ ${#missing[@]} -gt 0 ]]; then
-  install "${missing[@]}"
+if [[ ${#missing[@]} -gt 0 ]] && ! install "${missing[@]}"; then
+  echo "setup: luxel needs these packages, and they could not be installed: ${missing[*]}" >&2
+  exit 1
 fi
 if [[ ${#wanted[@]} -gt 0 ]] && ! install "${wanted[@]}"; then
   echo "setup: going on without ${wanted[*]}" >&2

@@ -4,9 +4,9 @@
     tools/try_readme.py              runs them; exit 1 at the first that fails, or where a program is missing
     tools/try_readme.py --self-test  tests this program
 
-Run are the commands of README up to its first section with pictures of what luxel can do, in order, but for
-`make test`. luxel-view runs with --help, because it would wait for its user. After that each program that README,
-the guide or `make demo` names as build/release/bin/NAME must be there.
+It runs the commands of README up to the end of the section Start, in order; luxel-view with --help, because it would
+wait for its user. After that, each program that README, the guide or `make demo` names as build/release/bin/NAME must
+be there, but luxel-bench, which `make luxel-bench` builds. Warnings of the compiler are failures.
 """
 import pathlib
 import re
@@ -18,27 +18,25 @@ PROGRAM = re.compile(r"build/release/bin/[\w-]+")
 
 
 def first_commands(readme):
-    """The commands of the first screen, comments and continued lines resolved."""
-    screen = re.split(r"^## (?!Bake)", readme, flags=re.M)[0]
+    """The commands up to the end of the section Start, without comments, and with continued lines joined."""
+    screen = re.split(r"^## (?!Start$)", readme, flags=re.M)[0]
     lines = re.sub(r" \\\n\s+", " ", screen).splitlines()
     return [line[4:].split(" # ")[0].rstrip() for line in lines if re.match(r"    (make|build/release/bin/)", line)]
 
 
 def as_run(command):
-    """The command as this program runs it; None: not at all."""
-    if command == "make test":
-        return None
+    """The command as this program runs it."""
     view = re.match(r"(\S*/luxel-view)\b", command)
     return f"{view.group(1)} --help" if view else command
 
 
 def self_test():
-    text = ("intro\n\n    make demo    # builds\n    make test\n\n## Bake a scene\n\n    build/release/bin/luxel bake a \\\n"
+    text = ("intro\n\n    make demo    # builds\n    make test\n\n## Start\n\n    build/release/bin/luxel bake a \\\n"
             "      -o b\n    build/release/bin/luxel-view b\n\n## Ten things\n\n    build/release/bin/luxel never\n")
     commands = first_commands(text)
     assert commands == ["make demo", "make test", "build/release/bin/luxel bake a -o b",
                         "build/release/bin/luxel-view b"], commands
-    assert [as_run(c) for c in commands] == ["make demo", None, "build/release/bin/luxel bake a -o b",
+    assert [as_run(c) for c in commands] == ["make demo", "make test", "build/release/bin/luxel bake a -o b",
                                              "build/release/bin/luxel-view --help"]
     assert PROGRAM.findall("`build/release/bin/luxel-view x`, build/release/bin/luxel.") == [
         "build/release/bin/luxel-view", "build/release/bin/luxel"]
@@ -50,7 +48,7 @@ def main():
         return self_test()
     printed = ""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    for command in filter(None, map(as_run, first_commands(readme))):
+    for command in map(as_run, first_commands(readme)):
         print(f"$ {command}", flush=True)
         done = subprocess.run(command, shell=True, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True)
@@ -62,7 +60,7 @@ def main():
     if warnings:
         sys.exit("try_readme: building printed warnings:\n" + "\n".join(warnings))
     for page in [readme] + [p.read_text(encoding="utf-8") for p in sorted((ROOT / "docs/guide").glob("*.md"))] + [printed]:
-        for program in PROGRAM.findall(page):
+        for program in set(PROGRAM.findall(page)) - {"build/release/bin/luxel-bench"}:
             if not (ROOT / program).exists():
                 sys.exit(f"try_readme: there is no {program}, which README, the guide or the demo names")
     print("try_readme: README's first commands work, and each program is there")

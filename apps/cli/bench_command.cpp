@@ -1,4 +1,5 @@
-// `luxel bench NAME`: the tables and the page in docs/. What they measure: bench/.
+// The program luxel-bench, which `luxel bench NAME` starts: it prints the tables in docs/ and
+// writes the pages. The folder bench/ has the measurements.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -220,11 +221,8 @@ int run_bench(const BenchOptions& options) {
 
 }  // namespace
 
-void register_bench(CLI::App& app, Action& action) {
-  CLI::App* bench = app.add_subcommand(
-      "bench",
-      "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md "
-      "or docs/guide/gallery.md");
+void register_commands(CLI::App& app, Action& action) {
+  CLI::App* bench = app.add_subcommand("bench", kAboutBench);
   auto options = std::make_shared<BenchOptions>();
   std::vector<std::string> names{"all",     kValidation, kStated,       kGallery,
                                  kHemicube, kRelight,    kHierarchical, kGrowth};

@@ -96,7 +96,12 @@ void register_render(CLI::App& app, Action& action);
 void register_compare(CLI::App& app, Action& action);
 void register_factors(CLI::App& app, Action& action);
 void register_relight(CLI::App& app, Action& action);
-void register_bench(CLI::App& app, Action& action);
 void register_doctor(CLI::App& app, Action& action);
+
+/// Registers the program's commands: all in luxel, bench alone in luxel-bench.
+void register_commands(CLI::App& app, Action& action);
+inline constexpr const char* kAboutBench =
+    "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md or "
+    "docs/guide/gallery.md";
 
 }  // namespace luxel::cli

@@ -73,17 +73,7 @@ std::unique_ptr<CLI::App> make_app(luxel::cli::Action& action) {
   app->set_version_flag("--version", [] { return luxel::cli::version_text(); });
   app->require_subcommand(1);
   app->footer(kExitCodes);
-  register_bake(*app, action);
-  register_merge(*app, action);
-  register_render(*app, action);
-  register_compare(*app, action);
-  register_info(*app, action);
-  register_factors(*app, action);
-  register_probe(*app, action);
-  register_lux(*app, action);
-  register_relight(*app, action);
-  register_bench(*app, action);
-  register_doctor(*app, action);
+  register_commands(*app, action);
   return app;
 }
 

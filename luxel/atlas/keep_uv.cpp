@@ -20,7 +20,7 @@ std::string triangle_name(const scene::Scene& scene, const Atlas& atlas, uint32_
 }
 
 Status check_range(const scene::Scene& scene) {
-  constexpr float kSlack = 1e-5f;  // exporters round; a texel of the largest atlas is 6e-5
+  constexpr float kRounding = 1e-5f;  // exporters round; a texel of the largest atlas is 6e-5
   for (const scene::Instance& instance : scene.instances) {
     const scene::Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.triangles.empty()) continue;
@@ -30,7 +30,8 @@ Status check_range(const scene::Scene& scene) {
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
       for (const uint32_t v : mesh.triangles[t]) {
         const Vec2 uv = mesh.uv1[v];
-        if (!(uv.x >= -kSlack && uv.x <= 1 + kSlack && uv.y >= -kSlack && uv.y <= 1 + kSlack))
+        if (!(uv.x >= -kRounding && uv.x <= 1 + kRounding && uv.y >= -kRounding &&
+              uv.y <= 1 + kRounding))
           return fail(ErrorCode::bad_input,
                       "--uv keep: triangle {} of mesh '{}' has TEXCOORD_1 ({}, {}) outside [0, 1]; "
                       "use --uv unwrap",

@@ -1,6 +1,7 @@
 #include "luxel/export/gltf_node.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <cmath>
 
 #include "luxel/export/json_parts.h"
@@ -40,8 +41,8 @@ json translation_of(const Mat34& m) { return {m.row[0][3], m.row[1][3], m.row[2]
 /// A mirror goes into the sign of a scale.
 size_t append_sheared(Glb& glb, const Mat34& world, json content) {
   // The matrix has dynamic size: for the fixed one gcc 12 sees an uninitialised value that is none.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(linear_part(world),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(
+      linear_part(world), Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
   Eigen::Vector3d s = svd.singularValues();
   if (u.determinant() < 0) u.col(2) *= -1, s(2) *= -1;

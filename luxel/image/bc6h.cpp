@@ -11,7 +11,7 @@ namespace luxel::image {
 namespace {
 
 constexpr int kSide = 4, kPixels = kSide * kSide;
-constexpr uint16_t kLargestHalf = 0x7bff;
+constexpr uint16_t kLargestBits = 0x7bff;
 
 using Ints = std::array<int, 3>;
 using Floats = std::array<float, 3>;
@@ -55,7 +55,7 @@ int half_bits(int spread) { return (spread * 31) >> 6; }
 
 /// The quantised number whose half is nearest.
 int quantise(float half, int bits) {
-  const int most = bits == 16 ? (int(kLargestHalf) * 64 + 30) / 31 : (1 << bits) - 1;
+  const int most = bits == 16 ? (int(kLargestBits) * 64 + 30) / 31 : (1 << bits) - 1;
   const int guess = int(std::lround(half * (64.0f / 31) * std::ldexp(1.0f, bits - 16)));
   int best = 0;
   float distance = INFINITY;
@@ -160,8 +160,8 @@ Ends outermost(const Pixels& pixels) {
   }
   Ends out{};
   for (size_t c = 0; c < 3; ++c) {
-    out[0][c] = std::clamp(mean[c] + low * axis[c], 0.0f, float(kLargestHalf));
-    out[1][c] = std::clamp(mean[c] + high * axis[c], 0.0f, float(kLargestHalf));
+    out[0][c] = std::clamp(mean[c] + low * axis[c], 0.0f, float(kLargestBits));
+    out[1][c] = std::clamp(mean[c] + high * axis[c], 0.0f, float(kLargestBits));
   }
   return out;
 }
@@ -185,8 +185,8 @@ Ends least_squares(const Pixels& pixels, const Fit& fit, const Ends& old) {
   for (size_t c = 0; c < 3; ++c) {
     const float a = (bb * a_value[c] - ab * b_value[c]) / determinant;
     const float b = (aa * b_value[c] - ab * a_value[c]) / determinant;
-    out[0][c] = std::clamp(a, 0.0f, float(kLargestHalf));
-    out[1][c] = std::clamp(b, 0.0f, float(kLargestHalf));
+    out[0][c] = std::clamp(a, 0.0f, float(kLargestBits));
+    out[1][c] = std::clamp(b, 0.0f, float(kLargestBits));
   }
   return out;
 }
@@ -200,7 +200,7 @@ void polish(const Pixels& pixels, Fit& best) {
         for (const int step : {-1, 1}) {
           std::array<Ints, 2> end = best.end;
           end[e][c] += step;
-          const int most = best.mode->bits == 16 ? (int(kLargestHalf) * 64 + 30) / 31
+          const int most = best.mode->bits == 16 ? (int(kLargestBits) * 64 + 30) / 31
                                                  : (1 << best.mode->bits) - 1;
           if (end[e][c] < 0 || end[e][c] > most) continue;
           is_better |= improve(pixels, *best.mode, end, best);
@@ -272,7 +272,7 @@ Pixels pixels_of(const HalfImage& image, int x0, int y0) {
         image.data.data() + (size_t(y) * size_t(image.width) + size_t(x)) * size_t(image.channels);
     bool is_black = true;
     for (size_t c = 0; c < 3; ++c) {
-      const uint16_t bits = pixel[c] & 0x8000 ? 0 : std::min(pixel[c], kLargestHalf);
+      const uint16_t bits = pixel[c] & 0x8000 ? 0 : std::min(pixel[c], kLargestBits);
       out.value[size_t(i)][c] = float(bits);
       is_black = is_black && bits == 0;
     }

@@ -22,7 +22,7 @@ struct SupersampleParams {
   float threshold = 0.1f;  ///< neighbours that differ by more of the brighter one make it vary
   /// Settings of direct_light, without sky_samples. Each point gets an eighth of the samples, but
   /// eight at least where that many are asked for.
-  DirectParams direct;
+  DirectParams direct = {};
 };
 
 struct Supersampled {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kRaysForInside = 32;
 /// Texels that a thread, or a member of a team, takes at a time.
-constexpr size_t kBlock = 1024;
+constexpr size_t kTexelBlock = 1024;
 
 /// Neighbours on the map.
 struct Neighbours {
@@ -194,10 +194,11 @@ bool WallSearch::is_at_border(uint32_t texel) const {
 
 Result<Walls> WallSearch::find_walls(Team* team, Progress& progress) const {
   const size_t count = in.map.texels.size();
-  LUXEL_TRY(const std::vector<Neighbours> pairs,
-            share_lists<Neighbours>(team, count, kBlock, progress, [&](size_t begin, size_t end) {
-              return blocked(uint32_t(begin), uint32_t(end));
-            }));
+  LUXEL_TRY(
+      const std::vector<Neighbours> pairs,
+      share_lists<Neighbours>(team, count, kTexelBlock, progress, [&](size_t begin, size_t end) {
+        return blocked(uint32_t(begin), uint32_t(end));
+      }));
   std::vector<uint8_t> is_parted(pairs.size());
   Walls out{std::vector<uint8_t>(count), std::vector<uint8_t>(count)};
   const auto find_parted = [&](size_t begin, size_t end) {
@@ -230,7 +231,7 @@ Result<Walls> WallSearch::find_walls(Team* team, Progress& progress) const {
 
 /// Per texel a bit: something leans over its sample.
 Result<std::vector<uint64_t>> find_under(const OwnSides& in, Team* team, Progress& progress) {
-  constexpr size_t kWords = kBlock / 64;
+  constexpr size_t kWords = kTexelBlock / 64;
   const size_t count = in.map.texels.size();
   std::vector<uint64_t> out((count + 63) / 64);
   const auto find = [&](size_t first_word, size_t end_word) {

@@ -100,7 +100,7 @@ notebooks. Scenes are files, or made of arrays.")
 include(CPack)
 
 # Not the target `package`, which builds all tests first. The files appear when all of them are whole.
-set(package_targets luxel luxel-view luxel_pages luxel_pipeline luxel_relight)
+set(package_targets luxel luxel-bench luxel-view luxel_pages luxel_pipeline luxel_relight)
 if(TARGET luxel_python)
   list(APPEND package_targets luxel_python)
 endif()

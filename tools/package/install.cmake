@@ -34,7 +34,8 @@ if(CMAKE_INSTALL_DO_STRIP)
 endif()" COMPONENT dev)
 
 install(TARGETS luxel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT luxel)
-# OPTIONAL, as the pages below: `make build` builds luxel alone.
+# OPTIONAL, as the pages below: `make build` builds luxel and luxel-view alone.
+install(TARGETS luxel-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT luxel OPTIONAL)
 set(luxel_view_folder ${CMAKE_INSTALL_LIBDIR}/luxel/view)
 install(TARGETS luxel-view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT view OPTIONAL)
 install(TARGETS luxel_view_ui LIBRARY DESTINATION ${luxel_view_folder} COMPONENT view OPTIONAL)
@@ -51,7 +52,7 @@ if(NOT LUXEL_SANITIZE AND NOT LUXEL_SANITIZE_THREADS)
     COMMAND sh -c "gzip -9n '${luxel_pages}'/man/*.1"
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/make_completions.py $<TARGET_FILE:luxel> ${luxel_pages}
     COMMAND ${CMAKE_COMMAND} -E touch ${luxel_pages}/made
-    DEPENDS luxel luxel-view ${PROJECT_SOURCE_DIR}/tools/make_man_pages.py
+    DEPENDS luxel luxel-bench luxel-view ${PROJECT_SOURCE_DIR}/tools/make_man_pages.py
             ${PROJECT_SOURCE_DIR}/tools/make_completions.py ${PROJECT_SOURCE_DIR}/tools/command_help.py
             ${PROJECT_SOURCE_DIR}/tools/make_options_page.py
     COMMENT "Man pages and completions" VERBATIM)

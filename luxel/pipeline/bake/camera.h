@@ -14,9 +14,9 @@ namespace luxel::pipeline {
 struct CameraChoice {
   /// interior, exterior, front or top (display::Viewpoint), or a camera of the scene; before
   /// `name`.
-  std::string view;
-  std::string name;         ///< of a camera of the scene; empty: the first, else a fitted one
-  std::optional<Vec3> eye;  ///< instead of a camera of the scene
+  std::string view = {};
+  std::string name = {};         ///< of a camera of the scene; empty: the first, else a fitted one
+  std::optional<Vec3> eye = {};  ///< instead of a camera of the scene
   Vec3 look_at{};
   double fov_deg = 45;
   float aspect = 4.0f / 3;         ///< of the picture

@@ -17,11 +17,11 @@ namespace luxel::pipeline {
 
 /// A map of up to four values in [0, 1] per texel.
 struct SurfaceMap {
-  std::string name;                      ///< of its files: "shadow-mask", "ambient-occlusion"
-  size_t channels = 1;                   ///< of its files
-  std::vector<uint32_t> lights;          ///< shadow mask: index into Scene::lights, per channel
-  std::vector<std::vector<Rgb>> values;  ///< three channels each, per texel of the map
-  std::vector<image::Image> pages;       ///< what the files hold: `channels` of each page
+  std::string name;                   ///< of its files: "shadow-mask", "ambient-occlusion"
+  size_t channels = 1;                ///< of its files
+  std::vector<uint32_t> lights = {};  ///< shadow mask: index into Scene::lights, per channel
+  std::vector<std::vector<Rgb>> values = {};  ///< three channels each, per texel of the map
+  std::vector<image::Image> pages = {};       ///< what the files hold: `channels` of each page
 };
 
 /// The lights that --shadow-mask names, as indices into scene.lights; none where it is not given.

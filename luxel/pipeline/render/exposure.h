@@ -12,7 +12,7 @@ namespace luxel::pipeline {
 struct Exposure {
   bool automatic = true;
   /// automatic: this percentile of luminance is shown at 0.6; none: display::readable_exposure().
-  std::optional<double> percentile;
+  std::optional<double> percentile = {};
   double stops = 0;  ///< otherwise: light is multiplied by 2^stops
 };
 

@@ -9,7 +9,7 @@
 namespace luxel::matrix {
 namespace {
 
-float square_sum(const Values& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+float squared_length(const Values& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
 std::vector<std::vector<SenderValues>> sender_values(const ClusterFunctions& functions,
                                                      std::span<const float> area_m2) {
@@ -18,7 +18,7 @@ std::vector<std::vector<SenderValues>> sender_values(const ClusterFunctions& fun
     for (size_t depth = begin; depth < end; ++depth)
       for (size_t i = 0; i < area_m2.size(); ++i) {
         const Values& phi = functions.phi[depth][i];
-        const float square = square_sum(phi);
+        const float square = squared_length(phi);
         out[depth].push_back({phi[0], phi[1], phi[2], square, square * area_m2[i]});
       }
   });
@@ -45,7 +45,7 @@ std::vector<std::vector<SenderValues>> sender_values(const ClusterFunctions& fun
                                            Coupling& coupling, double& noise) {
   for (size_t a = 0; a < kFunctions; ++a)
     for (size_t b = 0; b < kFunctions; ++b) coupling[a][b] += phi[a] * area_m2 * sum[b];
-  noise += double(square_sum(phi) * area_m2) * double(area_m2 * sum[3] + sum[4]);
+  noise += double(squared_length(phi) * area_m2) * double(area_m2 * sum[3] + sum[4]);
 }
 
 LUXEL_VECTOR_CLONES

@@ -39,14 +39,14 @@ auto key_of(const scene::PunctualLight& l) {
                          l.outer_cone_rad);
 }
 
-struct KeptLight {
-  std::optional<decltype(key_of({}))> of;  ///< nothing: no lamp yet
-  std::vector<Rgb> direct;                 ///< E per patch
-};
-
 }  // namespace
 
 struct Relighter::Impl {
+  struct KeptLight {
+    std::optional<decltype(key_of({}))> of;  ///< nothing: no lamp yet
+    std::vector<Rgb> direct;                 ///< E per patch
+  };
+
   RelightData data;
   RelighterParams params;
   scene::Scene occluders;  ///< stays where it is: the tracer refers to it

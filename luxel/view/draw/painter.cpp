@@ -85,8 +85,8 @@ gpu::DrawParams screen_params() {
 gpu::DrawParams beside_params() {
   gpu::DrawParams params = screen_params();
   params.fragment = beside_frag;
-  constexpr uint32_t kPushBytes = 24;  // BesidePush of beside.cpp
-  params.interface = {kPushBytes, std::vector<VkDescriptorType>(5, kLookUp)};
+  constexpr uint32_t kBesidePushBytes = 24;  // BesidePush of beside.cpp
+  params.interface = {kBesidePushBytes, std::vector<VkDescriptorType>(5, kLookUp)};
   return params;
 }
 

@@ -9,6 +9,20 @@
 #include "luxel/view/shaders/surface.vert.h"
 
 namespace luxel::view {
+
+/// The features of a surface that its shader draws, in the order of the shader's constants, and its
+/// culling.
+struct Drawn {
+  uint32_t lamps = 2;         ///< 0: none, 1: with sharp shadows, 2: all
+  uint32_t lets_through = 1;  ///< light is scattered to the other side
+  uint32_t fades = 1;         ///< one light into another
+  uint32_t has_more = 1;      ///< it glows, or is metal
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;
+
+  auto tied() const { return std::tie(lamps, lets_through, fades, has_more, cull); }
+  friend bool operator<(const Drawn& a, const Drawn& b) { return a.tied() < b.tied(); }
+};
+
 namespace {
 
 /// The push constants of the shader, in scalar layout.
@@ -21,18 +35,6 @@ struct SurfacePush {
   float second_light = 0;
 };
 static_assert(sizeof(SurfacePush) == 120);
-
-/// What a shader draws, in the order of its constants, and which triangles.
-struct Drawn {
-  uint32_t lamps = 2;         ///< 0: none, 1: with sharp shadows, 2: all
-  uint32_t lets_through = 1;  ///< light is scattered to the other side
-  uint32_t fades = 1;         ///< one light into another
-  uint32_t has_more = 1;      ///< it glows, or is metal
-  VkCullModeFlags cull = VK_CULL_MODE_NONE;
-
-  auto tied() const { return std::tie(lamps, lets_through, fades, has_more, cull); }
-  friend bool operator<(const Drawn& a, const Drawn& b) { return a.tied() < b.tied(); }
-};
 
 VkCullModeFlags cull_of(const DeviceScene& scene, uint32_t instance, uint32_t material) {
   if (scene.is_double_sided[material]) return VK_CULL_MODE_NONE;

@@ -1,7 +1,6 @@
 #include "luxel/solve/gather/trace/sort_rays.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
@@ -101,13 +100,14 @@ void look_up_beside_walls(const RayScene& in, PlacesMet& places) {
   }
 }
 
-/// Looks up what some rays of the batch have met, `ray` going through their numbers.
-template <class Rays>
-void find_places(const RayScene& in, RayBuffers& buffers, const Rays& rays) {
+/// Looks up the surfaces that `count` rays of the batch have met; number_of(k) is the k-th one's
+/// number in the batch.
+template <class NumberOf>
+void find_places(const RayScene& in, RayBuffers& buffers, size_t count, const NumberOf& number_of) {
   PlacesMet& places = buffers.places;
   places.of_ray.resize(buffers.hits.size());
   places.beside_walls.clear(), places.points.clear();
-  for (const uint32_t ray : rays) look_up(in, buffers, ray);
+  for (size_t k = 0; k < count; ++k) look_up(in, buffers, number_of(k));
   look_up_beside_walls(in, places);
 }
 
@@ -212,7 +212,7 @@ StoredHit store(const RayScene& in, const scene::SurfacePoint& p, StoredHit::Ray
 void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                TracedHits& out, RayTile& tile) {
   const size_t count = buffers.batch.rays.size();
-  find_places(in, buffers, std::views::iota(uint32_t(0), uint32_t(count)));
+  find_places(in, buffers, count, [](size_t k) { return uint32_t(k); });
   for (size_t k = 0; k < count; ++k) {
     const RayEnd end = end_of(in, buffers, k, element, samples);
     tile.ends.push_back(end);
@@ -230,7 +230,7 @@ void merge_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples
   const std::span<RayEnd> ends = std::span(tile.ends).last(count);
   for (const RayEnd end : {RayEnd::back, RayEnd::behind, RayEnd::escaped})
     count_ends(end, int(count_of(before.ends, end)), element, out);
-  find_places(in, buffers, buffers.retraced);
+  find_places(in, buffers, buffers.retraced.size(), [&](size_t k) { return buffers.retraced[k]; });
   size_t next = 0, hit = 0;
   // The hits of rays from `next` on, up to `end`, stay.
   const auto keep_up_to = [&](size_t end) {

@@ -19,7 +19,7 @@ constexpr int kDenoiseResolution = 128;
 /// The reference: this many bakes of this many samples, of other seeds; its own error is a third of
 /// that of the last row.
 constexpr int kReferenceBakes = 8, kReferenceSamples = 1024;
-constexpr std::array kSamples{16, 64, 256, 1024};
+constexpr std::array kDenoiseSamples{16, 64, 256, 1024};
 
 /// A quarter as many shadow rays as indirect ones, as in the defaults.
 pipeline::BakeSettings settings_of(int samples, uint64_t seed) {
@@ -47,7 +47,7 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
   Progress progress;
   LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kDenoiseResolution, progress));
   LUXEL_TRY(const std::vector<Rgb> reference, reference_of(*p, progress));
-  for (const int samples : kSamples) {
+  for (const int samples : kDenoiseSamples) {
     const pipeline::BakeSettings settings = settings_of(samples, 1);
     std::clock_t start = std::clock();
     LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings, progress));

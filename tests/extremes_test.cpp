@@ -57,7 +57,9 @@ TEST(SlowExtremes, EveryCommandEnds) {
       EXPECT_TRUE(r.code == 0 || r.code == 1 || r.code == 3)
           << extreme.name << ": " << command << " ends with " << r.code << "\n"
           << r.err;
-      if (r.code != 0) EXPECT_THAT(r.err, HasSubstr("luxel: ")) << extreme.name << command;
+      if (r.code != 0) {
+        EXPECT_THAT(r.err, HasSubstr("luxel: ")) << extreme.name << command;
+      }
       EXPECT_FALSE(has_not_a_number(r.out)) << extreme.name << ": " << command << "\n" << r.out;
     }
   }

@@ -11,7 +11,6 @@
 namespace luxel::testing_support {
 namespace {
 
-using nlohmann::json;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -52,10 +51,10 @@ TEST(Doctor, SaysHowThingsStand) {
   const CommandResult text = luxel("doctor", kNoLeakSearch);
   EXPECT_EQ(text.code, 0) << text.out;
   EXPECT_THAT(text.out, HasSubstr("of its exact light"));
-  const json all = json::parse(luxel("doctor --json", kNoLeakSearch).out);
+  const nlohmann::json all = nlohmann::json::parse(luxel("doctor --json", kNoLeakSearch).out);
   EXPECT_EQ(all["bakes"], true);
   EXPECT_GE(all["findings"].size(), 8u);
-  for (const json& finding : all["findings"]) {
+  for (const nlohmann::json& finding : all["findings"]) {
     const bool is_good = finding["state"] == "good";
     EXPECT_EQ(finding["advice"].get<std::string>().empty(), is_good) << finding;
   }
@@ -65,11 +64,11 @@ TEST(Doctor, SaysHowThingsStand) {
   EXPECT_THAT(without.out, HasSubstr("lacking  graphics device"));
 }
 
-std::vector<json> events_in(const std::string& text) {
-  std::vector<json> out;
+std::vector<nlohmann::json> events_in(const std::string& text) {
+  std::vector<nlohmann::json> out;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    out.push_back(json::parse(line, nullptr, false));
+    out.push_back(nlohmann::json::parse(line, nullptr, false));
     EXPECT_TRUE(out.back().is_object()) << "not a line of JSON: " << line;
   }
   return out;
@@ -84,7 +83,7 @@ TEST(Events, AreAllThatStandardErrorGets) {
   EXPECT_EQ(r.out, "");
   std::vector<std::string> ended;
   size_t shown = 0;
-  for (const json& event : events_in(r.err)) {
+  for (const nlohmann::json& event : events_in(r.err)) {
     if (event["event"] == "stage") ended.push_back(event["stage"]);
     if (event["event"] != "progress") continue;
     ++shown;
@@ -99,7 +98,7 @@ TEST(Events, AreErrorsAndWarnings) {
   const ScratchFolder s;
   const CommandResult wrong = luxel("info " + (s.path / "none.glb").string() + " --progress-json");
   EXPECT_EQ(wrong.code, 1);
-  const std::vector<json> error = events_in(wrong.err);
+  const std::vector<nlohmann::json> error = events_in(wrong.err);
   ASSERT_EQ(error.size(), 1u);
   EXPECT_EQ(error[0]["event"], "error");
   EXPECT_EQ(error[0]["code"], "io");
@@ -112,9 +111,9 @@ TEST(Events, AreErrorsAndWarnings) {
             (s.path / "out").string());
   ASSERT_EQ(warned.code, 0) << warned.err;
   std::vector<std::string> warnings;
-  for (const json& event : events_in(warned.err))
+  for (const nlohmann::json& event : events_in(warned.err))
     if (event["event"] == "warning") warnings.push_back(event["message"]);
-  EXPECT_EQ(json(warnings), json::parse(warned.out)["warnings"]);
+  EXPECT_EQ(nlohmann::json(warnings), nlohmann::json::parse(warned.out)["warnings"]);
   EXPECT_FALSE(warnings.empty());
 }
 
@@ -147,7 +146,9 @@ class OptionFiles : public ::testing::Test {
     return luxel("bake " + (folder / "scene.glb").string() + " -o " + out().string() + " " + more);
   }
   std::filesystem::path out() const { return s.path / "out"; }
-  json settings() const { return json::parse(slurp(out() / "bake.json")).at("settings"); }
+  nlohmann::json settings() const {
+    return nlohmann::json::parse(slurp(out() / "bake.json")).at("settings");
+  }
 
   ScratchFolder s;
   std::filesystem::path folder = s.path / "scenes";
@@ -168,11 +169,11 @@ denoise = true
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_THAT(r.err, HasSubstr("luxel.toml: --background=0.1,0.2,0.3 --denoise --formats=exr,hdr "
                                "--max-error=0.5 --resolution=24 --no-stitch"));
-  const json given = settings();
+  const nlohmann::json given = settings();
   EXPECT_EQ(given["resolution"], 24);
   EXPECT_EQ(given["samples"], 3);  // the command line wins
   EXPECT_EQ(given["max_error"], 0.5);
-  EXPECT_EQ(given["background"], json({0.1, 0.2, 0.3}));
+  EXPECT_EQ(given["background"], nlohmann::json({0.1, 0.2, 0.3}));
   EXPECT_EQ(given["stitch"], false);
   EXPECT_EQ(given["denoise"], true);
   // What contradicts an option of the command line gives way, too.
@@ -203,7 +204,7 @@ size = "32x24"
             " -o " + (s.path / "a.png").string());
   ASSERT_EQ(picture.code, 0) << picture.err;
   EXPECT_THAT(picture.err, HasSubstr("options from"));
-  EXPECT_EQ(json::parse(picture.out)["width"], 32);
+  EXPECT_EQ(nlohmann::json::parse(picture.out)["width"], 32);
   // Without --samples, which hemicube does not look at.
   const CommandResult r = bake("--solver hemicube");
   ASSERT_EQ(r.code, 0) << r.err;

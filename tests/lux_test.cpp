@@ -15,7 +15,6 @@
 namespace luxel::testing_support {
 namespace {
 
-using nlohmann::json;
 using ::testing::HasSubstr;
 
 /// A photometric file as its text says: candela by vertical and horizontal angle [degrees].
@@ -103,7 +102,7 @@ TEST_P(PointMethod, IsMetInABlackRoom) {
       luxel("lux " + scene.string() + " --from " + (s.path / "bake").string() +
             " --plane 0.85 --spacing 0.5 -o " + (s.path / "plane.csv").string() + " --json");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_EQ(json::parse(r.out)["unit"], "lux");
+  EXPECT_EQ(nlohmann::json::parse(r.out)["unit"], "lux");
   const Photometry photometry = photometry_of(ies);
   const std::vector<PlaneRow> rows = rows_of(s.path / "plane.csv");
   ASSERT_EQ(rows.size(), 144u);
@@ -121,8 +120,8 @@ TEST_P(PointMethod, IsMetInABlackRoom) {
 }
 INSTANTIATE_TEST_SUITE_P(Files, PointMethod,
                          ::testing::Values("spot.ies", "batwing.ies", "wall-washer.ies"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& file) {
+                           std::string name = file.param;
                            name.erase(name.find('.'));
                            std::erase(name, '-');
                            return name;
@@ -140,9 +139,9 @@ TEST(Lux, IsNearTheLumenMethod) {
       luxel("lux " + scene + " --from " + (s.path / "bake").string() + " --json -o " +
             (s.path / "p.csv").string() + " -o " + (s.path / "p.png").string());
   ASSERT_EQ(r.code, 0) << r.err;
-  const json report = json::parse(r.out);
+  const nlohmann::json report = nlohmann::json::parse(r.out);
   ASSERT_EQ(report["floors"].size(), 1u);
-  const json floor = report["floors"][0];
+  const nlohmann::json floor = report["floors"][0];
   ASSERT_EQ(floor["rooms"].size(), 1u);
   EXPECT_NEAR(floor["mean"], 553, 0.03 * 553);
   EXPECT_LT(double(floor["standard_error_of_mean"]), 0.001 * 553);
@@ -167,10 +166,10 @@ TEST(Lux, OfAFurnaceIsThatOfItsWalls) {
   const std::string from = " --from " + (s.path / "bake").string();
   const CommandResult r = luxel("lux " + scene + from + " --plane 0.4 --spacing 0.25 --json");
   ASSERT_EQ(r.code, 0) << r.err;
-  const json floor = json::parse(r.out)["floors"][0];
+  const nlohmann::json floor = nlohmann::json::parse(r.out)["floors"][0];
   const CommandResult p = luxel("probe " + scene + from + " --at 0.5,0,0.5 --json");
   ASSERT_EQ(p.code, 0) << p.err;
-  const double wall = json::parse(p.out)["irradiance_interpolated"][1];
+  const double wall = nlohmann::json::parse(p.out)["irradiance_interpolated"][1];
   EXPECT_NEAR(floor["mean"], wall, 0.003 * wall);
   EXPECT_GT(floor["uniformity"], 0.99);
   // The picture of irradiance has the same number in every pixel that shows a wall.
@@ -222,9 +221,9 @@ TEST(Lux, FindsFloorsAndRooms) {
     const CommandResult r = luxel("lux " + scene + " --from " + (s.path / "bake").string() +
                                   " --spacing 0.2 --samples 64 --json " + options);
     EXPECT_EQ(r.code, 0) << r.err;
-    return json::parse(r.out)["floors"];
+    return nlohmann::json::parse(r.out)["floors"];
   };
-  const json found = floors("");
+  const nlohmann::json found = floors("");
   ASSERT_EQ(found.size(), 2u);
   EXPECT_NEAR(found[0]["y"], 0, 1e-5);
   EXPECT_NEAR(found[1]["y"], 2.8, 1e-5);
@@ -238,7 +237,7 @@ TEST(Lux, FindsFloorsAndRooms) {
   EXPECT_EQ(found[1]["rooms"].size(), 1u);
   EXPECT_EQ(found[1]["points"], 820);
   // Half a metre from the walls and more: of 20 x 20 points 16 x 16.
-  const json inner = floors("--floor 0 --boundary 0.5");
+  const nlohmann::json inner = floors("--floor 0 --boundary 0.5");
   ASSERT_EQ(inner.size(), 1u);
   EXPECT_EQ(inner[0]["rooms"][0]["points"], 256);
 }
@@ -273,10 +272,10 @@ TEST(Probe, ThreeMethodsAgree) {
   const auto probed = [&](const std::string& options) {
     const CommandResult r = luxel("probe " + scene + " --at 0.1,0.01,0.4 --json " + options);
     EXPECT_EQ(r.code, 0) << r.err;
-    return json::parse(r.out);
+    return nlohmann::json::parse(r.out);
   };
-  const json exact = probed("--solver hierarchical"), paths = probed("");
-  const json from = probed("--from " + (s.path / "bake").string());
+  const nlohmann::json exact = probed("--solver hierarchical"), paths = probed("");
+  const nlohmann::json from = probed("--from " + (s.path / "bake").string());
   const double e = exact["illuminance"];
   // Closed forms of the direct light, 1 % of the indirect half by its elements.
   const double sigma = paths["illuminance_standard_error"];
@@ -287,7 +286,7 @@ TEST(Probe, ThreeMethodsAgree) {
   EXPECT_EQ(paths["unit"], "lux");
   // What sources bring adds up to E: all light comes from surfaces.
   double sum = 0, factors = 0;
-  for (const json& source : paths["sources"])
+  for (const nlohmann::json& source : paths["sources"])
     sum += double(source["irradiance"][1]), factors += double(source["form_factor"]);
   EXPECT_NEAR(sum, double(paths["irradiance"][1]), 0.03 * e);
   EXPECT_LE(factors, 1 + 1e-9);
@@ -301,8 +300,8 @@ TEST(Probe, InTheAir) {
   const CommandResult r =
       luxel("probe " + scene + " --at 0,50,0 --in-air --background 1,1,1 --json --max-error 0.01");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_NEAR(json::parse(r.out)["illuminance"], M_PI, 1e-3);
-  EXPECT_EQ(json::parse(r.out)["surface"], "");
+  EXPECT_NEAR(nlohmann::json::parse(r.out)["illuminance"], M_PI, 1e-3);
+  EXPECT_EQ(nlohmann::json::parse(r.out)["surface"], "");
 }
 
 // The time is over before the error is reached: a number, its error, and a sentence.

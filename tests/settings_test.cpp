@@ -9,15 +9,14 @@
 namespace luxel::testing_support {
 namespace {
 
-using nlohmann::json;
 using testing::HasSubstr;
 
 CommandResult bake(const std::string& options, const std::filesystem::path& output) {
   return luxel("bake " + options + " --quiet -o " + output.string());
 }
 
-json settings_in(const std::filesystem::path& folder) {
-  return json::parse(slurp(folder / "bake.json")).at("settings");
+nlohmann::json settings_in(const std::filesystem::path& folder) {
+  return nlohmann::json::parse(slurp(folder / "bake.json")).at("settings");
 }
 
 // Numbers, names, switches, texts and a solver's own options, none of them the default.
@@ -45,7 +44,7 @@ TEST(GivenSettings, GiveWayToOptions) {
   const CommandResult r = bake(
       scene_file("cornell-box.glb") + " --samples 4 --settings " + file.string(), s.path / "out");
   ASSERT_EQ(r.code, 0) << r.err;
-  const json settings = settings_in(s.path / "out");
+  const nlohmann::json settings = settings_in(s.path / "out");
   EXPECT_EQ(settings.at("samples"), 4);
   EXPECT_EQ(settings.at("resolution"), 16);
   EXPECT_EQ(settings.at("seed"), 3);
@@ -94,7 +93,7 @@ TEST(JsonErrors, AreOneObject) {
         std::pair{std::string("no-such-command"), "usage"}}) {
     SCOPED_TRACE(arguments);
     const CommandResult r = luxel(arguments + " --json --quiet");
-    const json error = json::parse(r.out, nullptr, false);
+    const nlohmann::json error = nlohmann::json::parse(r.out, nullptr, false);
     ASSERT_TRUE(error.is_object()) << r.out;
     EXPECT_EQ(error["error"]["code"], code);
     EXPECT_EQ(error["error"]["exit_code"], r.code);

@@ -107,7 +107,7 @@ TEST_F(BakesOfATeamSlow, HaveTheBitsOfOneProcessForAnyNumber) {
 // Other solvers and commands: paths, hemicubes, patches, view factors.
 TEST_F(BakesOfATeam, HaveTheBitsOfOneProcessByOtherSolvers) {
   const std::string office = scene_file("office.glb") + " --resolution 48 --solver ";
-  for (const std::string more :
+  for (const std::string& more :
        {office + "reference --samples 16", office + "hemicube --max-elements 1500 --hemicube 16",
         office + "matrix --patches 500 --rays 256"})
     EXPECT_EQ(done_together(2, more), alone(more)) << more;
@@ -121,7 +121,7 @@ TEST_F(BakesOfATeam, HaveTheBitsOfOneProcessInTables) {
     EXPECT_EQ(r.code, 0) << r.err;
     return slurp(file);
   };
-  for (const std::string command :
+  for (const std::string& command :
        {"factors " + box, "factors " + box + " --method rays --samples 4096",
         "factors " + box + " --method hemicube --samples 4",
         "relight " + box + " --patches 300 --rays 256 --resolution 32"})
@@ -233,7 +233,9 @@ class KilledBakes : public BakesOfATeam {
     std::this_thread::sleep_for(std::chrono::duration<double>(after_s));
     const bool killed = signal_rank(rank, SIGKILL);
     bake.join();
-    if (!killed) EXPECT_EQ(r.code, 0) << r.err;
+    if (!killed) {
+      EXPECT_EQ(r.code, 0) << r.err;
+    }
     return killed && r.code != 0;
   }
   /// Parts that all checkpoints have.

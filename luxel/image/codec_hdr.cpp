@@ -17,7 +17,7 @@ using Bytes = std::span<const uint8_t>;
 
 /// A broken header may claim any size: this many pixels (16384 squared) are the most we believe.
 constexpr uint64_t kCodecHdrMaxPixels = uint64_t(1) << 28;
-constexpr size_t kMaxSide = 65536;
+constexpr size_t kMaxHdrSide = 65536;
 /// Widths for which the newer run-length code exists.
 constexpr size_t kMinRunWidth = 8, kMaxRunWidth = 32767;
 
@@ -115,10 +115,10 @@ Result<Header> read_header(Reader& in) {
                 "{}: the HDR file has '{}' where its size should stand, as in '-Y 480 +X 640'",
                 in.name, line);
   const auto [lines, width] = header.count;
-  if (lines > kMaxSide || width > kMaxSide || lines * width > kCodecHdrMaxPixels)
+  if (lines > kMaxHdrSide || width > kMaxHdrSide || lines * width > kCodecHdrMaxPixels)
     return fail(ErrorCode::bad_input,
                 "{}: the HDR file claims {} x {} pixels; the most is {}, and {} a side", in.name,
-                width, lines, kCodecHdrMaxPixels, kMaxSide);
+                width, lines, kCodecHdrMaxPixels, kMaxHdrSide);
   return header;
 }
 

@@ -52,8 +52,9 @@ TEST(Half, FilesHaveAScaleOnlyWhereTheyNeedOne) {
 
 TEST(Half, EveryBitPatternIsRead) {
   for (uint32_t bits = 0; bits < 65536; ++bits)
-    if ((bits >> 10 & 31) != 31)
+    if ((bits >> 10 & 31) != 31) {
       ASSERT_EQ(double(from_half(uint16_t(bits))), value_of(uint16_t(bits)));
+    }
 }
 
 TEST(Half, DarkerThanThatHasAFixedStep) {

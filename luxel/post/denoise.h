@@ -24,7 +24,7 @@ struct TexelGeometry {
   std::span<const Vec3> normal;     ///< unit shading normal
   std::span<const uint8_t> hidden;  ///< 1: its light means nothing; neither read nor changed
   /// Texels with different numbers share no light. Empty: all may.
-  std::span<const uint32_t> region;
+  std::span<const uint32_t> region = {};
 };
 
 /// How far the filter looks, and what it holds to be the same light.

@@ -94,7 +94,9 @@ TEST(Statistics, EachPairOfNumbersHasEveryCellOnce) {
     }
     for (const auto& t : times) EXPECT_EQ(t, (std::array<uint32_t, 3>{1, 1, 1})) << count;
     // By chance about one is.
-    if (count >= 100) EXPECT_LE(alike, 8u);
+    if (count >= 100) {
+      EXPECT_LE(alike, 8u);
+    }
   }
 }
 

@@ -11,16 +11,16 @@ namespace {
 constexpr int kBumpsAcross = 6, kTexels = 64, kQuadsPerBump = 14;
 constexpr float kSide = 1.5f;                  ///< of the floor [m]
 constexpr float kBump = kSide / kBumpsAcross;  ///< from top to top
-constexpr float kHeight = 0.02f;
+constexpr float kBumpHeight = 0.02f;
 
 /// h = height (1 - cos 2 pi u) (1 - cos 2 pi v) / 4 over one bump, u and v in [0, 1].
 float height_m(float u, float v) {
-  return kHeight * (1 - std::cos(2 * kPi * u)) * (1 - std::cos(2 * kPi * v)) / 4;
+  return kBumpHeight * (1 - std::cos(2 * kPi * u)) * (1 - std::cos(2 * kPi * v)) / 4;
 }
 
 /// By u along +x and v along +z.
 Vec3 bump_normal(float u, float v) {
-  const float slope = kHeight / kBump * 2 * kPi / 4;
+  const float slope = kBumpHeight / kBump * 2 * kPi / 4;
   return normalize(Vec3{-slope * std::sin(2 * kPi * u) * (1 - std::cos(2 * kPi * v)), 1,
                         -slope * std::sin(2 * kPi * v) * (1 - std::cos(2 * kPi * u))});
 }
@@ -57,7 +57,7 @@ Mesh floor_in_relief(uint32_t material) {
     for (uint32_t i = 0; i <= cells; ++i) {
       const float u = float(i) / kQuadsPerBump, v = float(j) / kQuadsPerBump;
       mesh.positions.push_back(
-          {u * kBump - kSide / 2, height_m(u, v) - kHeight / 4, v * kBump - kSide / 2});
+          {u * kBump - kSide / 2, height_m(u, v) - kBumpHeight / 4, v * kBump - kSide / 2});
       mesh.normals.push_back(bump_normal(u, v));
     }
   for (uint32_t j = 0; j < cells; ++j)

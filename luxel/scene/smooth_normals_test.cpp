@@ -9,7 +9,7 @@
 namespace luxel::scene {
 namespace {
 
-constexpr float kDegree = kPi / 180;
+constexpr float kOneDegree = kPi / 180;
 /// Floats of unit size, and an arc cosine of theirs.
 constexpr float kRounding = 1e-5f;
 
@@ -71,7 +71,7 @@ TEST(SmoothNormals, OfASphereTendToItsRadii) {
   for (const int slices : {16, 32, 64}) {
     Mesh mesh = sphere("ball", 2, slices, slices / 2, 0);
     mesh.normals.clear();
-    smooth_normals(mesh, 60 * kDegree);
+    smooth_normals(mesh, 60 * kOneDegree);
     ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
     const float error = largest_angle_to_radius(mesh);
     if (slices > 16) {
@@ -84,7 +84,7 @@ TEST(SmoothNormals, OfASphereTendToItsRadii) {
 
 TEST(SmoothNormals, LeaveACubeAsItIsBelowItsAngle) {
   Mesh mesh = shared_cube();
-  smooth_normals(mesh, 30 * kDegree);
+  smooth_normals(mesh, 30 * kOneDegree);
   EXPECT_TRUE(mesh.normals.empty());
   EXPECT_EQ(mesh.positions.size(), 8u);
   EXPECT_EQ(mesh.triangles, shared_cube().triangles);
@@ -94,7 +94,7 @@ TEST(SmoothNormals, LeaveACubeAsItIsBelowItsAngle) {
 // although one or two triangles of a face have the corner.
 TEST(SmoothNormals, AreWeightedByAngleNotByTriangle) {
   Mesh mesh = shared_cube();
-  smooth_normals(mesh, 91 * kDegree);
+  smooth_normals(mesh, 91 * kOneDegree);
   ASSERT_EQ(mesh.normals.size(), 8u);
   EXPECT_LT(largest_angle_to_radius(mesh), kRounding);
 }
@@ -102,10 +102,10 @@ TEST(SmoothNormals, AreWeightedByAngleNotByTriangle) {
 // The sides of a prism over a twelve-sided polygon meet at 30 degrees, and its lids at 90.
 TEST(SmoothNormals, SplitVerticesWhereTheSurfaceIsCreased) {
   Mesh below = prism(12, false);
-  smooth_normals(below, 29.9f * kDegree);
+  smooth_normals(below, 29.9f * kOneDegree);
   EXPECT_TRUE(below.normals.empty());
   Mesh mesh = prism(12, false);
-  smooth_normals(mesh, 30 * kDegree);
+  smooth_normals(mesh, 30 * kOneDegree);
   ASSERT_EQ(mesh.positions.size(), 48u) << "one of the side and one of the lid, for each of 24";
   ASSERT_EQ(mesh.normals.size(), 48u);
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -119,7 +119,7 @@ TEST(SmoothNormals, SplitVerticesWhereTheSurfaceIsCreased) {
 // Exporters repeat vertices along a seam; it must not show.
 TEST(SmoothNormals, CrossSeamsOfTextureCoordinates) {
   Mesh mesh = prism(12, true);
-  smooth_normals(mesh, 30 * kDegree);
+  smooth_normals(mesh, 30 * kOneDegree);
   ASSERT_EQ(mesh.uv0.size(), mesh.positions.size());
   std::set<float> at_seam;
   for (size_t t = 0; t < 24; ++t)
@@ -134,7 +134,7 @@ TEST(SmoothNormals, CrossSeamsOfTextureCoordinates) {
 /// Two triangles that meet at 10 degrees along the z axis; `extra` more hang on the same edge.
 Mesh fold(bool second_turned, int extra) {
   Mesh mesh;
-  const float c = std::cos(10 * kDegree), s = std::sin(10 * kDegree);
+  const float c = std::cos(10 * kOneDegree), s = std::sin(10 * kOneDegree);
   mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-c, -s, 0}, {0, -1, 0}};
   mesh.triangles = {{0, 1, 2}};
   mesh.triangles.push_back(second_turned ? std::array<uint32_t, 3>{0, 1, 3}
@@ -147,7 +147,7 @@ Mesh fold(bool second_turned, int extra) {
 // Where a third surface ends on an edge, or one side is turned inside out, no two belong together.
 TEST(SmoothNormals, KeepEdgesOfOtherThanTwoLikeSidesSharp) {
   Mesh smooth = fold(false, 0), turned = fold(true, 0), third = fold(false, 1);
-  for (Mesh* mesh : {&smooth, &turned, &third}) smooth_normals(*mesh, 60 * kDegree);
+  for (Mesh* mesh : {&smooth, &turned, &third}) smooth_normals(*mesh, 60 * kOneDegree);
   EXPECT_FALSE(smooth.normals.empty());
   EXPECT_TRUE(turned.normals.empty());
   EXPECT_TRUE(third.normals.empty());

@@ -134,6 +134,7 @@ TEST_P(SlowNearContacts, TheRelighterDoesAsWell) {
   matrix::Target target{.kind = matrix::Target::Kind::texels,
                         .width = kResolution,
                         .height = kResolution,
+                        .texel = {},
                         .position = copied(texels.position),
                         .normal = copied(texels.normal),
                         .geometric_normal = copied(texels.geometric_normal),

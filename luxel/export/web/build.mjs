@@ -33,6 +33,8 @@ const [before, after] = page.split("<!--data-->");
 await writeFile(process.argv[2], `// Made by export/web/build.mjs.
 #include "luxel/export/view_template.h"
 
+#pragma GCC diagnostic ignored "-Woverlength-strings"
+
 namespace luxel::export_ {
 
 std::string_view view_page_before_data() {

@@ -172,7 +172,7 @@ TEST(ShadowMask, HasThePenumbraOfTheSunsDisc) {
 TEST(ShadowMask, TakesLightsByTheirNames) {
   scene::Scene scene = floor_and_wall(1);
   add_sun(scene, 0);
-  for (int i = 0; i < 5; ++i) scene.lights.push_back({.position = {2, 1, 2}});
+  for (int i = 0; i < 5; ++i) scene.lights.push_back({.name = {}, .position = {2, 1, 2}});
   BakeSettings settings;
   EXPECT_TRUE(masked_lights(settings, scene)->empty());
   settings.shadow_mask = "auto";

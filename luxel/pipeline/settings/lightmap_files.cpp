@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "luxel/export/baked_glb.h"
 #include "luxel/image/bc6h.h"
@@ -30,6 +29,8 @@ constexpr std::array kFormats{
 
 Result<LightmapFormats> parse_formats(std::string_view text) {
   LightmapFormats formats;
+  std::array<std::string_view, kFormats.size()> names;
+  std::ranges::transform(kFormats, names.begin(), &Format::name);
   for (const std::string_view one : split_at_commas(text)) {
     const auto* format = std::ranges::find(kFormats, one, &Format::name);
     if (format != kFormats.end())
@@ -38,7 +39,7 @@ Result<LightmapFormats> parse_formats(std::string_view text) {
       return fail(
           ErrorCode::bad_setting,
           "--formats '{}': there is no format '{}'; choose from: exr, {}, with commas between them",
-          text, one, fmt::join(kFormats | std::views::transform(&Format::name), ", "));
+          text, one, fmt::join(names, ", "));
   }
   return formats;
 }

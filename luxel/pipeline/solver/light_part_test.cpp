@@ -87,7 +87,7 @@ TEST(LightPart, KnowsSunFromSky) {
   scene::add_material(scene, "plate", {0.5f, 0.5f, 0.5f});
   scene::add_rectangle(scene, {0, 1, 0, 1}, 0, true, 0);
   scene.background = {1, 1, 1};
-  scene.lights.push_back({.kind = scene::PunctualLight::Kind::directional});
+  scene.lights.push_back({.name = {}, .kind = scene::PunctualLight::Kind::directional});
   for (const auto& [part, expected] : {std::pair{LightPart::all, kPi + 1},
                                        {LightPart::direct, kPi + 1},
                                        {LightPart::indirect, 0.0f},

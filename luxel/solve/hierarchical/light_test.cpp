@@ -126,7 +126,9 @@ TEST(PushPull, SendsNothingLessThanNothing) {
     EXPECT_EQ(l.radiosity.x, 0) << e;
     EXPECT_NEAR(l.radiosity.y, 0.25 * 0.9, 1e-6);
     EXPECT_NEAR(l.radiosity.z, 2, 1e-6);
-    if (two.tree.elements[e].is_leaf()) EXPECT_EQ(l.shining[0].x, 0);
+    if (two.tree.elements[e].is_leaf()) {
+      EXPECT_EQ(l.shining[0].x, 0);
+    }
   }
 }
 

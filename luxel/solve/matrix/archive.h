@@ -121,7 +121,7 @@ class Writer {
   template <class... X>
   void put(const std::variant<X...>& x) {
     put(uint32_t(x.index()));
-    std::visit([this](const auto& held) { put(held); }, x);
+    std::visit([this](const auto& held) { this->put(held); }, x);
   }
 };
 
@@ -211,7 +211,7 @@ class Reader {
     get(index);
     if (index >= sizeof...(X)) fault(fmt::format("kind {}, of {} known", index, sizeof...(X)));
     if (!error_) emplace<0>(x, index);
-    if (!error_) std::visit([this](auto& held) { get(held); }, x);
+    if (!error_) std::visit([this](auto& held) { this->get(held); }, x);
   }
   template <size_t I, class... X>
   static void emplace(std::variant<X...>& x, size_t index) {

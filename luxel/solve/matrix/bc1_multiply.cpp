@@ -12,7 +12,9 @@
 
 #if LUXEL_X86_VECTORS
 // GCC 12 takes its own undefined registers for uninitialised variables. [GCC bug 105593]
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <immintrin.h>
 #endif
 

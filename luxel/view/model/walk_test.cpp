@@ -327,7 +327,8 @@ TEST(Play, SaysWhichEventIsWrong) {
         R"({"at": 1, "logarithmic_range": [0, 1]})", R"({"at": 1, "beside": "above"})",
         R"({"at": 1, "split": 2})", R"({"at": 1, "part": "half"})", R"({"at": 1, "bounces": -1})",
         R"({"at": 1, "bounce": 9})"})
-    EXPECT_THAT(error(wrong), AllOf(HasSubstr("walk.json, event 1: "), HasSubstr("is not an event")));
+    EXPECT_THAT(error(wrong),
+                AllOf(HasSubstr("walk.json, event 1: "), HasSubstr("is not an event")));
   for (const char* wrong : {R"({"at": "now", "scroll": 1})", R"({"at": 1, "pointer": [1]})", "7"})
     EXPECT_THAT(error(wrong), HasSubstr("walk.json, event 1: "));
   EXPECT_THAT(error(right, R"("end": 1e9)"), HasSubstr("end from 0 to 3600 seconds"));

@@ -119,8 +119,9 @@ TEST_F(SavedLxr, HasTheSceneWithThoseLamps) {
   }
   for (const scene::Material& material : after->scene.materials)
     for (const Glow& glow : now_.glows)
-      if (glow.name == material.name)
+      if (glow.name == material.name) {
         EXPECT_LE(length(material.emission - glow.radiance), 1e-5f) << material.name;
+      }
   const auto others = [](const scene::Scene& scene) {
     scene::Scene out = scene;
     out.lights.clear();

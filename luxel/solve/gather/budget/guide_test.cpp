@@ -39,7 +39,9 @@ TEST(GuidedGroup, LevelsHaveNoMoreRaysThanTheirs) {
     EXPECT_LE(group.level(level).rays, 64.01f * std::exp2(0.5f * float(level)));
     EXPECT_GE(group.level(level).rays, 32 * std::exp2(0.5f * float(level)));
     EXPECT_EQ(shares_at(group, level).rays_per_sample() * 64, group.level(level).rays);
-    if (level > 1) EXPECT_LE(group.level(level).left, group.level(level - 1).left);
+    if (level > 1) {
+      EXPECT_LE(group.level(level).left, group.level(level - 1).left);
+    }
   }
 }
 

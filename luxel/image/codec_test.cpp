@@ -49,7 +49,7 @@ TEST(Exr, RoundTripKeepsEveryBit) {
 
 // Parts of 64 rows are compressed by all threads. The last has 13, less than a block of 16.
 TEST(Exr, ManyPartsAreOneFile) {
-  RandomStream random(6);
+  RandomStream random{6};
   Image image(30, 5 * 64 + 13, 3);
   for (float& v : image.data) v = random.next();
   const auto bytes = encode_exr(image);
@@ -62,7 +62,7 @@ TEST(Exr, ManyPartsAreOneFile) {
 
 // A picture of noise: no two parts are alike.
 TEST(Exr, IsCompressedByATeam) {
-  RandomStream random(6);
+  RandomStream random{6};
   Image image(30, 5 * 64 + 13, 3);
   for (float& v : image.data) v = random.next();
   const auto expected = encode_exr(image);
@@ -163,7 +163,7 @@ TEST(Png, RoundTripThroughAnotherDecoder) {
 
 /// Bands of gradients and of noise: rows for each of PNG's filters.
 Image8 banded(int width, int height, int channels) {
-  RandomStream random(5);
+  RandomStream random{5};
   Image8 out{width, height, channels, {}};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)

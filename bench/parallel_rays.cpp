@@ -7,6 +7,10 @@
 #include "luxel/base/vectorize.h"
 #include "luxel/scene/sides.h"
 
+#ifdef __clang__  // & keeps loops over lanes free of branches
+#pragma clang diagnostic ignored "-Wbitwise-instead-of-logical"
+#endif
+
 namespace luxel::bench {
 namespace {
 

@@ -25,7 +25,7 @@ void print(int stream, std::string_view text) {
 }
 
 /// Only functions that may be called in a signal's handler.
-void on_fault(int signal, siginfo_t* info, void*) {
+[[maybe_unused]] void on_fault(int signal, siginfo_t* info, void*) {
   const auto at = reinterpret_cast<uintptr_t>(info->si_addr);
   if (at < end_of_stack - kNear || at > end_of_stack + kNear) {
     // Another fault: the instruction runs again, and ends the process as it would have before.

@@ -56,15 +56,15 @@ def main():
     headers = {header: precompile(header, [words for words, own in parsed if own == header], folder)
                for header in {own for _, own in parsed if own}}
 
-    def look_at(unit):
-        words, header = arguments_of(unit["command"])
+    def look_at(unit, arguments):
+        words, header = arguments
         pch = ["-include-pch", str(headers[header])] if header else []
         return subprocess.run(["clang++", *pch, *words, "-fsyntax-only"], cwd=unit["directory"],
                               capture_output=True, text=True)
 
     wrong = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for unit, seen in zip(units, pool.map(look_at, units)):
+        for unit, seen in zip(units, pool.map(look_at, units, parsed)):
             if seen.returncode != 0 or seen.stderr:
                 print(f"{unit['file']}\n{seen.stderr}")
                 wrong += 1

@@ -308,7 +308,7 @@ void DelaunayMesh::clear(std::span<const uint32_t> left) {
 
 /// Rounded crossings bend constraints, and bundles of lines that rounding hardly tells apart would
 /// cross again and again. So constraints are led through vertices that they pass within rounding.
-/// Nobody has proved that few cuts are left then: pieces that cross after the last one are left
+/// A proof that few cuts are left then is missing: pieces that cross after the last one are left
 /// out.
 void DelaunayMesh::add_constraint(uint32_t from, uint32_t to_vertex) {
   std::vector<std::array<uint32_t, 2>> pieces{{from, to_vertex}};

@@ -20,9 +20,9 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 endif
-# One compiler for every GB of memory, at most one per core: Debian machines swap otherwise.
-JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
-          print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
+# One compiler for every 2 GB of memory, at most one per core: Debian machines swap otherwise.
+JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { jobs = int($$2 / 2097152); \
+          print jobs < 1 ? 1 : jobs < cores ? jobs : cores }' /proc/meminfo)
 
 # More arguments for configuring: .ci/run gives -DLUXEL_WERROR=ON. The sanitizers see warnings that are none.
 CONFIGURE ?=

@@ -164,7 +164,7 @@ Result<Watched> watch(const pipeline::BakeSettings& settings) {
   out.seconds = seconds_since(start);
   done = true;
   watcher.join();
-  if (!bake) return tl::unexpected(bake.error());
+  if (!bake) return Failure{bake.error()};
   return out;
 }
 

@@ -65,7 +65,7 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   page.json = nlohmann::json::object();
   std::string body;
   const auto add = [&](std::string_view name, Result<Section> section) -> Status {
-    if (!section) return tl::unexpected(section.error());
+    if (!section) return Failure{section.error()};
     body += section->markdown + "\n";
     page.json[std::string(name)] = std::move(section->json);
     for (PageFile& file : section->files) page.files.push_back(std::move(file));

@@ -81,8 +81,8 @@ std::vector<PlaneRow> rows_of(const std::filesystem::path& csv) {
   return out;
 }
 
-void bake(const std::string& scene, const std::filesystem::path& folder,
-          const std::string& options) {
+void bake_room(const std::string& scene, const std::filesystem::path& folder,
+               const std::string& options) {
   const CommandResult r = luxel("bake " + scene + " -o " + folder.string() + " " + options);
   ASSERT_EQ(r.code, 0) << r.err;
 }
@@ -97,7 +97,7 @@ TEST_P(PointMethod, IsMetInABlackRoom) {
   const Vec3 lamp{0.1f, 3, -0.2f};
   const auto scene = s.write("room.gltf", room_gltf({-3, 0, -3}, {3, 3.2f, 3}, 0, lamp, 1));
   const std::string ies = scene_file("ies/") + GetParam();
-  bake(scene.string(), s.path / "bake", "--resolution 16 --samples 4 --ies lamp=" + ies);
+  bake_room(scene.string(), s.path / "bake", "--resolution 16 --samples 4 --ies lamp=" + ies);
   const CommandResult r =
       luxel("lux " + scene.string() + " --from " + (s.path / "bake").string() +
             " --plane 0.85 --spacing 0.5 -o " + (s.path / "plane.csv").string() + " --json");
@@ -133,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(Files, PointMethod,
 TEST(Lux, IsNearTheLumenMethod) {
   const ScratchFolder s;
   const std::string scene = scene_file("ies/room.gltf");
-  bake(scene, s.path / "bake",
-       "--resolution 128 --samples 128 --ies lamp=" + scene_file("ies/diffuse.ies"));
+  bake_room(scene, s.path / "bake",
+            "--resolution 128 --samples 128 --ies lamp=" + scene_file("ies/diffuse.ies"));
   const CommandResult r =
       luxel("lux " + scene + " --from " + (s.path / "bake").string() + " --json -o " +
             (s.path / "p.csv").string() + " -o " + (s.path / "p.png").string());
@@ -162,7 +162,7 @@ TEST(Lux, IsNearTheLumenMethod) {
 TEST(Lux, OfAFurnaceIsThatOfItsWalls) {
   const ScratchFolder s;
   const std::string scene = scene_file("furnace-box.glb");
-  bake(scene, s.path / "bake", "--resolution 32 --samples 256");
+  bake_room(scene, s.path / "bake", "--resolution 32 --samples 256");
   const std::string from = " --from " + (s.path / "bake").string();
   const CommandResult r = luxel("lux " + scene + from + " --plane 0.4 --spacing 0.25 --json");
   ASSERT_EQ(r.code, 0) << r.err;
@@ -216,7 +216,7 @@ std::string two_storeys() {
 TEST(Lux, FindsFloorsAndRooms) {
   const ScratchFolder s;
   const std::string scene = s.write("house.obj", two_storeys()).string();
-  bake(scene, s.path / "bake", "--resolution 64 --samples 4 --quiet");
+  bake_room(scene, s.path / "bake", "--resolution 64 --samples 4 --quiet");
   const auto floors = [&](const std::string& options) {
     const CommandResult r = luxel("lux " + scene + " --from " + (s.path / "bake").string() +
                                   " --spacing 0.2 --samples 64 --json " + options);
@@ -245,7 +245,7 @@ TEST(Lux, FindsFloorsAndRooms) {
 TEST(Lux, RefusesWhatCannotBe) {
   const ScratchFolder s;
   const std::string scene = scene_file("cornell-box-empty.glb"), bake_of = (s.path / "b").string();
-  bake(scene, bake_of, "--resolution 16 --samples 4");
+  bake_room(scene, bake_of, "--resolution 16 --samples 4");
   for (const auto& [options, sentence] :
        {std::pair{"", "--plane 0.85: no surface"},
         {"--plane -1", "--plane -1 is not a height"},
@@ -268,7 +268,7 @@ TEST(Lux, RefusesWhatCannotBe) {
 TEST(Probe, ThreeMethodsAgree) {
   const ScratchFolder s;
   const std::string scene = scene_file("cornell-box.glb");
-  bake(scene, s.path / "bake", "--resolution 64 --samples 256");
+  bake_room(scene, s.path / "bake", "--resolution 64 --samples 256");
   const auto probed = [&](const std::string& options) {
     const CommandResult r = luxel("probe " + scene + " --at 0.1,0.01,0.4 --json " + options);
     EXPECT_EQ(r.code, 0) << r.err;

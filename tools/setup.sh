@@ -26,7 +26,7 @@ packages=(
   libvulkan-dev libvulkan-volk-dev glslang-tools # graphics devices
   libglfw3-dev libimgui-dev libfreetype-dev      # the window and its panels
   libcli11-dev libtomlplusplus-dev   # the command line, luxel.toml
-  libfmt-dev libexpected-dev
+  libfmt-dev
   pybind11-dev python3-dev python3-numpy python3-setuptools python3-wheel # the Python module
   libgtest-dev libgmock-dev          # tests
 )

@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     const auto path = std::filesystem::path(argv[1]) / file.file;
     const auto bytes = luxel::export_::scene_glb(file.scene);
     const auto written = bytes ? luxel::write_file_atomically(path, *bytes)
-                               : luxel::Status(tl::unexpected(bytes.error()));
+                               : luxel::Status(luxel::Failure{bytes.error()});
     if (!written) {
       std::fprintf(stderr, "%s\n", written.error().message.c_str());
       return 1;

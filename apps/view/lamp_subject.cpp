@@ -78,7 +78,7 @@ class LampSubject : public Subject {
     take_found();
     if (lamps_.saving.valid()) lamps_.saving.wait();
     has_saved();
-    if (failed_) return tl::unexpected(*failed_);
+    if (failed_) return Failure{*failed_};
     return said_at_end_;
   }
 

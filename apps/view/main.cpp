@@ -55,7 +55,8 @@ Status parse_size(Options& options) {
 
 Result<std::optional<view::Play>> events_of(const Options& options) {
   if (options.play.empty()) return std::nullopt;
-  return view::read_play(options.play);
+  LUXEL_TRY(view::Play play, view::read_play(options.play));
+  return play;
 }
 
 /// A scene, which is to be baked; everything else is an .lxr file or the folder of a bake.

@@ -307,7 +307,7 @@ Status show(Session s) {
   // A device that is lost takes nothing with it that the user has made.
   if (const Status kept = keep_habits(s); !kept)
     std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
-  if (!goes_on) return tl::unexpected(goes_on.error());
+  if (!goes_on) return Failure{goes_on.error()};
   if (s.params.play && !glfwWindowShouldClose(s.window.get())) LUXEL_TRY_STATUS(end_play(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);

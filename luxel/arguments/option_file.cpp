@@ -64,8 +64,7 @@ struct Reader {
   std::string_view table;
 
   template <class... Args>
-  tl::unexpected<Error> wrong(const toml::node& node, fmt::format_string<Args...> text,
-                              Args&&... args) const {
+  Failure wrong(const toml::node& node, fmt::format_string<Args...> text, Args&&... args) const {
     return fail(ErrorCode::bad_setting, "{}, line {}: {}", file.path.string(),
                 node.source().begin.line, fmt::format(text, std::forward<Args>(args)...));
   }

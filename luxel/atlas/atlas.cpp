@@ -80,13 +80,13 @@ Error too_small(const scene::Scene& scene, const Faces& faces,
                   "resolution {}: too small for the scene's {} charts with {} texels between them; "
                   "the smallest power of two that works is {}",
                   wanted, atlas->chart_count, params.gutter, params.resolution)
-          .value();
+          .error;
   }
   return fail(ErrorCode::bad_setting,
               "resolution {}: too small for the scene's {} charts, and so is the largest ({}); "
               "simplify the scene",
               wanted, groups.size(), kMaxResolution)
-      .value();
+      .error;
 }
 
 Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
@@ -99,7 +99,7 @@ Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progr
   Result<Atlas> atlas = try_layout(scene, faces, groups, params, progress);
   const bool small = !atlas && atlas.error().code == ErrorCode::bad_setting;
   if (small && params.texels_per_metre == 0 && params.page_mode == PageMode::fixed)
-    return tl::unexpected(too_small(scene, faces, groups, params, progress));
+    return Failure{too_small(scene, faces, groups, params, progress)};
   return atlas;
 }
 

@@ -258,7 +258,7 @@ Result<LaidOut> on_page_per_instance(const scene::Scene& scene, const Faces& fac
     // Another shape may pack worse than the largest.
     const Status done = lay_out_own_pages(faces, density, room, pages, progress);
     if (done) return joined(std::move(pages), density, params.gutter);
-    if (done.error().code != ErrorCode::bad_setting) return tl::unexpected(done.error());
+    if (done.error().code != ErrorCode::bad_setting) return Failure{done.error()};
   }
   return fail(ErrorCode::bad_setting,
               "resolution {}: too small for the charts of one of the scene's meshes with {} texels "

@@ -19,7 +19,7 @@ namespace luxel {
 inline namespace base {
 namespace {
 
-tl::unexpected<Error> write_error(const std::filesystem::path& path, int error) {
+Failure write_error(const std::filesystem::path& path, int error) {
   const bool full = error == ENOSPC || error == EDQUOT;
   return fail(full ? ErrorCode::out_of_disk : ErrorCode::io, "cannot write {}: {}", path.string(),
               std::strerror(error));

@@ -111,7 +111,7 @@ uint64_t MappedMemory::bytes_made() const {
 
 Status MappedMemory::trouble() const {
   const std::lock_guard lock(state_->mutex);
-  if (state_->trouble) return tl::unexpected(*state_->trouble);
+  if (state_->trouble) return Failure{*state_->trouble};
   return {};
 }
 

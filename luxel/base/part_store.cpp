@@ -49,7 +49,7 @@ bool PartStore::keep(RecordKey part, std::span<const std::byte> bytes) {
 
 Status PartStore::begin() {
   if (make_file()) return {};
-  return tl::unexpected(*error());
+  return Failure{*error()};
 }
 
 bool PartStore::make_file() {

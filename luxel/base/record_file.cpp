@@ -40,13 +40,13 @@ uint64_t digest_of_start(const Start& start) {
 }
 
 template <class... Args>
-tl::unexpected<Error> damaged(const std::filesystem::path& path, uint64_t at,
-                              fmt::format_string<Args...> text, Args&&... args) {
+Failure damaged(const std::filesystem::path& path, uint64_t at, fmt::format_string<Args...> text,
+                Args&&... args) {
   return fail(ErrorCode::bad_input, "{} is damaged at byte {}: {}; remove it and start over",
               path.string(), at, fmt::format(text, std::forward<Args>(args)...));
 }
 
-tl::unexpected<Error> io_error(const char* verb, const std::filesystem::path& path, int error) {
+Failure io_error(const char* verb, const std::filesystem::path& path, int error) {
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   return fail(full ? ErrorCode::out_of_disk : ErrorCode::io, "cannot {} {}: {}", verb,
               path.string(), std::strerror(error));

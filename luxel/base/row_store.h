@@ -63,7 +63,7 @@ class RowStore {
       else
         std::fill(store.is_in_file_.begin() + std::ptrdiff_t(fit), store.is_in_file_.end(), 1);
       auto file = ScratchFile::create(scratch_folder);
-      if (!file) return tl::unexpected(file.error());
+      if (!file) return Failure{file.error()};
       store.file_ = std::move(*file);
     }
     return store;

@@ -49,7 +49,7 @@ class ThreadTeam final : public Team {
   Result<std::vector<std::vector<std::byte>>> all_gather(std::span<const std::byte> own,
                                                          Progress& progress) override {
     std::unique_lock lock(state_->mutex);
-    if (state_->given_up) return tl::unexpected(*state_->given_up);
+    if (state_->given_up) return Failure{*state_->given_up};
     state_->sent[rank_].assign(own.begin(), own.end());
     state_->bytes += own.size();
     const uint64_t number = state_->gathers;
@@ -60,7 +60,7 @@ class ThreadTeam final : public Team {
       state_->changed.notify_all();
     }
     while (state_->gathers == number) {
-      if (state_->given_up) return tl::unexpected(*state_->given_up);
+      if (state_->given_up) return Failure{*state_->given_up};
       if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
       state_->changed.wait_for(lock, std::chrono::milliseconds(20));
     }

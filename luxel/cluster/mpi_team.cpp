@@ -218,7 +218,7 @@ class MpiTeam final : public Team {
     if (std::ranges::find(out, kGivenUp) == out.end()) return out;
     const Error error = gather_errors({}, progress);
     has_failed_ = true;
-    return tl::unexpected(error);
+    return Failure{error};
   }
 
   /// What members say that have given up: the first one's error.

@@ -39,8 +39,8 @@ Result<OwnedMemory> allocate(const Device& device, const VkMemoryRequirements& n
     result = device.vk.vkAllocateMemory(device.device, &info, nullptr, &memory);
     if (result == VK_SUCCESS) return OwnedMemory(device, memory);
   }
-  return tl::unexpected(
-      check(result, fmt::format("cannot create {} ({} MB)", what, needed.size >> 20)).error());
+  return Failure{
+      check(result, fmt::format("cannot create {} ({} MB)", what, needed.size >> 20)).error()};
 }
 
 Result<Buffer> make_buffer(const Device& device, VkDeviceSize size, Access access,

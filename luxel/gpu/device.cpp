@@ -241,8 +241,7 @@ bool is_wanted(const Candidate& candidate, uint32_t number, const DeviceParams& 
 }
 
 /// Why none of them is the one.
-tl::unexpected<Error> no_such_device(const std::vector<Candidate>& all,
-                                     const DeviceParams& params) {
+Failure no_such_device(const std::vector<Candidate>& all, const DeviceParams& params) {
   if (params.number)
     return fail(ErrorCode::no_device,
                 "no usable device has the number {}; the devices from 0 on: {}", *params.number,
@@ -281,7 +280,7 @@ Result<std::vector<DeviceInfo>> list_devices() {
   LUXEL_TRY(const VkInstance instance, make_instance({}, nullptr));
   const auto all = candidates(instance);
   vkDestroyInstance(instance, nullptr);
-  if (!all) return tl::unexpected(all.error());
+  if (!all) return Failure{all.error()};
   std::vector<DeviceInfo> out;
   for (const Candidate& candidate : *all) out.push_back(candidate.info);
   return out;

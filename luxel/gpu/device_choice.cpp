@@ -53,7 +53,7 @@ Result<ChosenDevice> open_chosen(const DeviceChoice& choice) {
   if (choice.kind == DeviceChoice::Kind::processor) return ChosenDevice{};
   auto device = Device::open(choice.params);
   if (device) return ChosenDevice{std::move(*device), {}};
-  if (choice.kind == DeviceChoice::Kind::device) return tl::unexpected(device.error());
+  if (choice.kind == DeviceChoice::Kind::device) return Failure{device.error()};
   return ChosenDevice{nullptr, has_card() ? device.error().message : std::string()};
 }
 

@@ -33,7 +33,7 @@ struct Reader {
   std::string_view name;
 };
 
-tl::unexpected<Error> ends_early(std::string_view name) {
+Failure ends_early(std::string_view name) {
   return fail(ErrorCode::bad_input, "{}: the HDR file ends too early; fetch or save it again",
               name);
 }

@@ -60,7 +60,7 @@ Result<Bytes> checked(std::span<const std::byte> bytes, std::string_view name,
     LUXEL_TRY_STATUS(
         check_picture_size(big_endian32(data.subspan(16)), big_endian32(data.subspan(20)), name));
   if (!stbi_info_from_memory(data.data(), int(data.size()), &width, &height, &channels))
-    return tl::unexpected(undecodable(name));
+    return Failure{undecodable(name)};
   LUXEL_TRY_STATUS(check_picture_size(uint32_t(width), uint32_t(height), name));
   if (allow) LUXEL_TRY_STATUS(allow(uint32_t(width), uint32_t(height)));
   return data;
@@ -87,7 +87,7 @@ Result<Image8> decode_png(std::span<const std::byte> bytes, std::string_view nam
   LUXEL_TRY(const Bytes data, checked(bytes, name, allow));
   Image8 image{0, 0, 4, {}};
   const auto pixels = load_rgba(stbi_load_from_memory, data, image.width, image.height);
-  if (pixels == nullptr) return tl::unexpected(undecodable(name));
+  if (pixels == nullptr) return Failure{undecodable(name)};
   image.data.assign(pixels.get(),
                     pixels.get() + size_t(4) * size_t(image.width) * size_t(image.height));
   return image;
@@ -97,7 +97,7 @@ Result<Image> decode_png_values(std::span<const std::byte> bytes, std::string_vi
   LUXEL_TRY(const Bytes data, checked(bytes, name, {}));
   int width = 0, height = 0;
   const auto pixels = load_rgba(stbi_load_16_from_memory, data, width, height);
-  if (pixels == nullptr) return tl::unexpected(undecodable(name));
+  if (pixels == nullptr) return Failure{undecodable(name)};
   Image image(width, height, 4);
   // stb gives 257 v for a byte v: v / 255 after the division.
   for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(pixels.get()[i]) / 65535.0f;

@@ -70,8 +70,7 @@ struct ColladaWalk {
   std::map<std::string_view, std::string_view> joints{};  // sources, by semantic
 
   template <class... Parts>
-  tl::unexpected<Error> error(size_t at, fmt::format_string<Parts...> format,
-                              Parts&&... parts) const {
+  Failure error(size_t at, fmt::format_string<Parts...> format, Parts&&... parts) const {
     return fail(ErrorCode::bad_input, "{}, line {}: {}", source.name, line_of(text, at),
                 fmt::format(format, std::forward<Parts>(parts)...));
   }
@@ -132,7 +131,7 @@ ColladaWords words_in(const ColladaWalk& walk, const XmlTag& tag) {
   return {walk.text, tag.end(), next ? next->at : walk.text.size()};
 }
 
-Result<uint64_t> number_in(const ColladaWalk& walk, std::string_view word, std::string_view list) {
+Result<uint64_t> index_in(const ColladaWalk& walk, std::string_view word, std::string_view list) {
   uint64_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error == std::errc() && end == word.data() + word.size() && value <= kNoLimit) return value;
@@ -144,7 +143,7 @@ Status check_vcount(ColladaWalk& walk, const XmlTag& tag) {
   ColladaLists& lists = *walk.lists;
   ColladaWords words = words_in(walk, tag);
   for (std::string_view word; !(word = words.next()).empty(); ++lists.vcounts) {
-    LUXEL_TRY(const uint64_t number, number_in(walk, word, "vcount"));
+    LUXEL_TRY(const uint64_t number, index_in(walk, word, "vcount"));
     lists.vcount_sum += number;
   }
   if (lists.vcounts == lists.count) return {};
@@ -180,7 +179,7 @@ Result<uint64_t> check_indices(const ColladaWalk& walk, const XmlTag& tag, bool 
   for (std::string_view word; !(word = words.next()).empty(); ++count) {
     const ColladaLimit& limit = limits[count % limits.size()];
     if (may_be_none && count % limits.size() == 0 && word == "-1") continue;
-    LUXEL_TRY(const uint64_t index, number_in(walk, word, tag.name));
+    LUXEL_TRY(const uint64_t index, index_in(walk, word, tag.name));
     if (index >= limit.entries)
       return walk.error(size_t(word.data() - walk.text.data()),
                         "index {} in <{}> is out of range, '{}' has {} entries", word, tag.name,

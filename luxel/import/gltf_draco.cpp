@@ -15,9 +15,9 @@
 namespace luxel::import {
 namespace {
 
-using Bytes = std::span<const unsigned char>;
+using DracoBytes = std::span<const unsigned char>;
 
-draco::DecoderBuffer buffer_over(Bytes bytes) {
+draco::DecoderBuffer buffer_over(DracoBytes bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return buffer;
@@ -30,7 +30,7 @@ struct Counts {
 };
 
 /// [Draco bitstream 2.2, sections 3 and 4.1]; glTF asks for this version.
-Result<Counts> stated_counts(Bytes bytes, const std::string& where) {
+Result<Counts> stated_counts(DracoBytes bytes, const std::string& where) {
   // A mesh of the one version that is known.
   draco::DecoderBuffer buffer = buffer_over(bytes);
   draco::DracoHeader header{};
@@ -65,7 +65,7 @@ Result<Counts> stated_counts(Bytes bytes, const std::string& where) {
 /// the most regular mesh there can be, takes Draco's own encoder 8,289 bytes: 1,011 per byte.
 constexpr uint64_t kMostFacesPerByte = 4096;
 
-Result<std::unique_ptr<draco::Mesh>> decode_mesh(Bytes bytes, const std::string& where) {
+Result<std::unique_ptr<draco::Mesh>> decode_mesh(DracoBytes bytes, const std::string& where) {
   const auto damaged = [&](const char* reason) {
     return fail(ErrorCode::bad_input, "{}: its {} bytes of Draco data are damaged: {}", where,
                 bytes.size(), one_sentence(reason));
@@ -187,8 +187,8 @@ Status check_counts(const Counts& counts, size_t bytes, const tinygltf::Model& m
 Status decode_primitive(tinygltf::Model& model, const Json& stated, const Json& extension,
                         tinygltf::Primitive& primitive, const std::string& where) {
   const auto& view = model.bufferViews[extension["bufferView"].get<size_t>()];
-  const Bytes bytes =
-      Bytes(model.buffers[size_t(view.buffer)].data).subspan(view.byteOffset, view.byteLength);
+  const DracoBytes bytes =
+      DracoBytes(model.buffers[size_t(view.buffer)].data).subspan(view.byteOffset, view.byteLength);
   LUXEL_TRY(const Counts counts, stated_counts(bytes, where));
   LUXEL_TRY_STATUS(check_counts(counts, bytes.size(), model, stated, where));
   LUXEL_TRY(const std::unique_ptr<draco::Mesh> mesh, decode_mesh(bytes, where));

@@ -66,7 +66,7 @@ Result<tinygltf::Model> load_model(const SourceFile& source, const std::string& 
                                         static_cast<unsigned int>(glb.size()), "")
           : loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
                                        static_cast<unsigned int>(text.size()), "");
-  if (!files.error.message.empty()) return tl::unexpected(files.error);
+  if (!files.error.message.empty()) return Failure{files.error};
   if (!loaded)
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name, one_sentence(error));
   return model;

@@ -11,7 +11,7 @@
 namespace luxel::import {
 namespace {
 
-tl::unexpected<Error> too_deep(const SourceFile& source, size_t at, const char* what) {
+Failure too_deep(const SourceFile& source, size_t at, const char* what) {
   return fail(ErrorCode::bad_input, "{}, line {}: more than {} {} are nested", source.name,
               line_of(text_of(source.bytes), at), kDeepestNesting, what);
 }

@@ -299,7 +299,7 @@ std::string header_text(const PlyHeader& header, const Surfaces& surfaces) {
   return out;
 }
 
-std::string text_of(const PlyHeader& header, const Surfaces& surfaces) {
+std::string ply_text(const PlyHeader& header, const Surfaces& surfaces) {
   std::string out = header_text(header, surfaces);
   out.reserve(out.size() + surfaces.vertices.size() + surfaces.material.size() +
               4 * (surfaces.corner_counts.size() + surfaces.corners.size()));
@@ -330,7 +330,7 @@ Result<PlainPly> write_plain_ply(const SourceFile& source, std::vector<std::stri
   }
   LUXEL_TRY_STATUS(source.memory.take(surfaces.bytes(), what));
   PlainPly plain;
-  plain.text = text_of(header, surfaces);
+  plain.text = ply_text(header, surfaces);
   for (const auto& kept : surfaces.of_vertex.kept)
     plain.has_display_colors |= kept.plain == "red" && kept.type == PlyType::u8;
   return plain;

@@ -59,7 +59,7 @@ struct Walk {
   }
 
   template <class... Parts>
-  tl::unexpected<Error> error(fmt::format_string<Parts...> format, Parts&&... parts) const {
+  Failure error(fmt::format_string<Parts...> format, Parts&&... parts) const {
     return fail(ErrorCode::bad_input, "{}, line {}: {}", source.name, words.line,
                 fmt::format(format, std::forward<Parts>(parts)...));
   }

@@ -9,8 +9,8 @@
 namespace luxel::scene {
 namespace {
 
-tl::unexpected<Error> too_bright(const std::string& file, const std::string& what,
-                                 const std::string& value, float most, const char* remedy) {
+Failure too_bright(const std::string& file, const std::string& what, const std::string& value,
+                   float most, const char* remedy) {
   return fail(ErrorCode::bad_input, "{}{}{}: {} is too bright, it may be {:g} at most; {}", file,
               file.empty() ? "" : ": ", what, value, most, remedy);
 }
@@ -129,7 +129,7 @@ Error overflow_at(const Scene& scene, Vec3 place) {
 Status check_held(const Scene& scene, std::span<const Rgb> light,
                   const std::function<Vec3(size_t)>& place) {
   for (size_t i = 0; i < light.size(); ++i)
-    if (!is_held_light(light[i])) return tl::unexpected(overflow_at(scene, place(i)));
+    if (!is_held_light(light[i])) return Failure{overflow_at(scene, place(i))};
   return {};
 }
 

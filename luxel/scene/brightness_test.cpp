@@ -12,7 +12,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-std::string error_of(const Scene& scene) {
+std::string brightness_error(const Scene& scene) {
   const Status status = check_brightness(scene, "f.glb");
   return status ? "none" : status.error().message;
 }
@@ -30,43 +30,43 @@ Scene box_with(PunctualLight::Kind kind, float intensity) {
 using Kind = PunctualLight::Kind;
 
 TEST(Brightness, WhatShinesOnEarthIsHeld) {
-  EXPECT_EQ(error_of(box_with(Kind::directional, 133000)), "none");  // the sun, lux
-  EXPECT_EQ(error_of(box_with(Kind::spot, 1e9f)), "none");           // a lighthouse, candela
-  Scene scene = box_with(Kind::point, 2.6e27f);                      // the sun where it is
+  EXPECT_EQ(brightness_error(box_with(Kind::directional, 133000)), "none");  // the sun, lux
+  EXPECT_EQ(brightness_error(box_with(Kind::spot, 1e9f)), "none");  // a lighthouse, candela
+  Scene scene = box_with(Kind::point, 2.6e27f);                     // the sun where it is
   scene.lights[0].position = {0, 1.5e11f, 0};
-  EXPECT_EQ(error_of(scene), "none");
+  EXPECT_EQ(brightness_error(scene), "none");
   scene.background = {1.6e9f, 1.6e9f, 1.6e9f};  // nothing but sun
-  EXPECT_EQ(error_of(scene), "none");
+  EXPECT_EQ(brightness_error(scene), "none");
 }
 
 TEST(Brightness, TooBrightLightsAreNamed) {
   for (const float much : {1.1e15f, 1e20f, 1e37f, 3e38f}) {
     const std::string value = fmt::format("{:g}", much);
-    EXPECT_THAT(error_of(box_with(Kind::directional, much)),
+    EXPECT_THAT(brightness_error(box_with(Kind::directional, much)),
                 AllOf(HasSubstr("f.glb: light 0 (lamp): an illuminance of " + value),
                       HasSubstr("1e+15 at most"), HasSubstr("lower its intensity")));
     Scene scene = box_with(Kind::point, 1);
     scene.materials[0].name = "glow", scene.materials[0].emission = {0, 0, much};
-    EXPECT_THAT(error_of(scene), HasSubstr("material 0 (glow): an emission of " + value));
+    EXPECT_THAT(brightness_error(scene), HasSubstr("material 0 (glow): an emission of " + value));
     scene.materials[0].emission = {}, scene.background = {much, 0, 0};
-    EXPECT_THAT(error_of(scene), HasSubstr("the background: a radiance of " + value));
+    EXPECT_THAT(brightness_error(scene), HasSubstr("the background: a radiance of " + value));
     scene.background = {}, scene.environment = {2, 1, {{1, 1, 1}, {1, much, 1}}, 0};
-    EXPECT_THAT(error_of(scene), HasSubstr("a radiance of " + value + " in pixel (1, 0)"));
+    EXPECT_THAT(brightness_error(scene), HasSubstr("a radiance of " + value + " in pixel (1, 0)"));
   }
 }
 
 // The corners of the box are sqrt(3)/2 m away: they get I / 0.75 m^2, and all else gets more.
 TEST(Brightness, PointLightsAreJudgedAtTheFarthestPlace) {
-  EXPECT_EQ(error_of(box_with(Kind::point, 0.74e15f)), "none");
-  EXPECT_THAT(error_of(box_with(Kind::spot, 0.76e15f)),
+  EXPECT_EQ(brightness_error(box_with(Kind::point, 0.74e15f)), "none");
+  EXPECT_THAT(brightness_error(box_with(Kind::spot, 0.76e15f)),
               AllOf(HasSubstr("light 0 (lamp): an intensity of 7.6e+14"), HasSubstr("0.866 m")));
-  EXPECT_THAT(error_of(box_with(Kind::point, 1e32f)),
+  EXPECT_THAT(brightness_error(box_with(Kind::point, 1e32f)),
               HasSubstr("an intensity of 1e+32 is too bright, it may be 1e+30 at most"));
   // Candela of a profile multiply the intensity.
   Scene scene = box_with(Kind::point, 1e10f);
   scene.profiles = {{"lamp.ies", LightProfile::Angles::c, {0, 1}, {0}, {5, 1e9f}}};
   scene.lights[0].profile = 0;
-  EXPECT_THAT(error_of(scene), HasSubstr("an intensity of 1e+19"));
+  EXPECT_THAT(brightness_error(scene), HasSubstr("an intensity of 1e+19"));
 }
 
 TEST(Brightness, OverflowNamesWhatIsBrightestThere) {

@@ -12,7 +12,7 @@ namespace luxel::scene {
 namespace {
 
 /// Without the reasons, a scene of triangles would be refused for having none.
-tl::unexpected<Error> nothing_left(const Report& report) {
+Failure nothing_left(const Report& report) {
   if (report.losses.empty())
     return fail(ErrorCode::bad_input, "{}: the scene has no triangles; nothing can be lit",
                 report.file);

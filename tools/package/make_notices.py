@@ -37,7 +37,6 @@ PARTS = [
     Part("JSON for Modern C++", "nlohmann-json3-dev", ALL, "headers",
          ("*", "include/nlohmann/detail/conversions/to_chars.hpp", "include/nlohmann/detail/output/serializer.hpp")),
     Part("fmt", "libfmt-dev", ALL, "headers"),
-    Part("tl-expected", "libexpected-dev", ALL, "headers"),
     Part("Eigen", "libeigen3-dev", ALL, "headers", ("*", "unsupported/test/mpreal/*", "Eigen/src/Cholesky/LLT_LAPACKE.h")),
     Part("Boost", "libboost1.74-dev", ALL, "headers"),  # CGAL includes it
     Part("oneTBB", "libtbb-dev", ALL, "headers"),
@@ -54,7 +53,7 @@ PARTS = [
 # interface, or the system: nothing of it is in luxel's files.
 INCLUDED = {
     "draco": "Draco", "tiny_gltf.h": "TinyGLTF", "stb": "stb", "meshoptimizer.h": "meshoptimizer",
-    "nlohmann": "JSON for Modern C++", "fmt": "fmt", "tl": "tl-expected", "Eigen": "Eigen", "CGAL": "CGAL",
+    "nlohmann": "JSON for Modern C++", "fmt": "fmt", "Eigen": "Eigen", "CGAL": "CGAL",
     "tbb": "oneTBB", "OpenEXR": "OpenEXR", "Imath": "Imath", "CLI": "CLI11", "toml++": "toml++", "volk.h": "volk",
     "imgui.h": "Dear ImGui", "backends": "Dear ImGui", "pybind11": "pybind11",
     "assimp": "", "embree3": "", "GLFW": "", "jpeglib.h": "", "jerror.h": "", "mpi.h": "", "vulkan": "", "webp": "",

@@ -71,10 +71,10 @@ Result<nlohmann::json> bake_part(const BakeSettings& settings, Progress& progres
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings));
   const Result<Bake> ended = bake_scene(settings, progress, {.checkpoint = &checkpoint});
   const PartStore* parts = checkpoint.parts();
-  if (parts != nullptr && parts->has_failed()) return tl::unexpected(*parts->error());
+  if (parts != nullptr && parts->has_failed()) return Failure{*parts->error()};
   // The last stages are left to `luxel merge` in any case.
   LUXEL_CHECK(!ended);
-  if (ended.error().code != ErrorCode::parts_missing) return tl::unexpected(ended.error());
+  if (ended.error().code != ErrorCode::parts_missing) return Failure{ended.error()};
   folder.keep();
   return nlohmann::json{{"part",
                          {{"number", settings.part.number},
@@ -122,7 +122,7 @@ Result<nlohmann::json> help_to_bake(const BakeSettings& settings, Progress& prog
   const Result<Bake> ended =
       bake_scene(settings, progress, {.checkpoint = &checkpoint, .team = &team});
   LUXEL_CHECK(!ended);
-  if (ended.error().code != ErrorCode::parts_missing) return tl::unexpected(ended.error());
+  if (ended.error().code != ErrorCode::parts_missing) return Failure{ended.error()};
   return nlohmann::json::object();
 }
 

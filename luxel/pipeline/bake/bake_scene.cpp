@@ -45,8 +45,7 @@ Status check_held(const light::TexelScene& in, const TexelLight& light) {
     LUXEL_TRY_STATUS(scene::check_held(in.scene, layer, place));
   for (const std::vector<float>* variance : {&light.variance, &light.direct_variance})
     for (size_t i = 0; i < variance->size(); ++i)
-      if (!std::isfinite((*variance)[i]))
-        return tl::unexpected(scene::overflow_at(in.scene, place(i)));
+      if (!std::isfinite((*variance)[i])) return Failure{scene::overflow_at(in.scene, place(i))};
   return {};
 }
 
@@ -148,8 +147,8 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
 
 /// A digest of where charts lie, which texel each element is and where its rays begin. On another
 /// kind of machine a layout may come out differently, whose parts are of no use.
-uint64_t digest_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                   const transport::Elements& elements) {
+uint64_t digest_of_layout(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                          const transport::Elements& elements) {
   Digest digest;
   digest.add("layout"), digest.add(map.resolution);
   digest.add(std::span(atlas.corners));
@@ -200,7 +199,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
                                 ready.elements, ready.lights, ready.tracer};
   PartStore* parts = keepers.checkpoint ? keepers.checkpoint->parts() : nullptr;
   const uint64_t layout =
-      parts || keepers.team ? digest_of(bake.atlas, bake.map, ready.elements) : 0;
+      parts || keepers.team ? digest_of_layout(bake.atlas, bake.map, ready.elements) : 0;
   if (parts) parts->set_context(layout);
   LUXEL_TRY_STATUS(check_same_work(keepers.team, bake.scene, layout, progress));
   const SolveStores stores{parts, keepers.cache, keepers.device, keepers.team};
@@ -243,7 +242,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
 }
 
 /// The error of a bake whose solver cannot stop by itself at the end of --time-budget.
-tl::unexpected<Error> out_of_time(const BakeSettings& settings, const Progress& progress) {
+Failure out_of_time(const BakeSettings& settings, const Progress& progress) {
   const Solver& solver = *find_solver(settings.solver);
   const std::string own =
       solver.options.empty() ? "" : " or the values of " + flags_of(solver.options);

@@ -90,8 +90,8 @@ Status check_picture(const scene::Scene& scene, const trace::RayTracer& tracer,
       const trace::CameraRays rays(camera, picture.width, picture.height);
       const trace::Ray ray = rays.through(float(x) + 0.5f, float(y) + 0.5f);
       const trace::Hit hit = tracer.closest_hit(ray);
-      return tl::unexpected(scene::overflow_at(
-          scene, hit.found() ? scene::world_position(scene, hit.point()) : ray.origin));
+      return Failure{scene::overflow_at(
+          scene, hit.found() ? scene::world_position(scene, hit.point()) : ray.origin)};
     }
   return {};
 }

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-tl::unexpected<Error> no_parts_in(const fs::path& place) {
+Failure no_parts_in(const fs::path& place) {
   return fail(ErrorCode::bad_input, "{} has no parts of a bake; luxel bake --part makes them",
               place.string());
 }

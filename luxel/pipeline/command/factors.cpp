@@ -231,7 +231,7 @@ std::string factors_csv(const viewfactor::FactorMatrix& matrix,
 namespace {
 
 /// A digest of what decides how the work is shared out, and its results.
-uint64_t digest_of(const FactorSettings& s) {
+uint64_t digest_of_settings(const FactorSettings& s) {
   Digest digest;
   digest.add(s.method), digest.add(s.tolerance.value_or(0)), digest.add(s.samples.value_or(0));
   digest.add(s.hemicube.value_or(0)), digest.add(s.from), digest.add(s.to), digest.add(s.seed);
@@ -245,7 +245,7 @@ Result<FactorReport> make_report(scene::Scene scene, std::vector<std::string> wa
   FactorReport report;
   report.warnings = std::move(warnings);
   LUXEL_TRY(const viewfactor::Surfaces surfaces, read_surfaces(settings, scene, report, progress));
-  LUXEL_TRY_STATUS(check_same_work(team, scene, digest_of(settings), progress));
+  LUXEL_TRY_STATUS(check_same_work(team, scene, digest_of_settings(settings), progress));
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   // Their view factors, and how well they are known.

@@ -25,7 +25,7 @@ struct Node {
   Node at(size_t k) const { return {value[k], fmt::format("{}[{}]", where, k)}; }
 };
 
-tl::unexpected<Error> wrong(const Node& node, std::string_view wanted) {
+Failure wrong(const Node& node, std::string_view wanted) {
   return fail(ErrorCode::bad_input, "{} is {}; it should be {}", node.where,
               node.value.dump().substr(0, 60), wanted);
 }

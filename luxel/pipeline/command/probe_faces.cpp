@@ -93,7 +93,7 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
                                 ? double(INFINITY)
                                 : length(nearest.position - to_double(s.at));
   if (!(distance_m <= kFarFromSurfaces * diagonal_m))
-    return tl::unexpected(far_from_surfaces(s, diagonal_m, distance_m));
+    return Failure{far_from_surfaces(s, diagonal_m, distance_m)};
   const hierarchical::Face& face = solution.faces.faces[nearest.face];
   const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
                                                               inwards(face, nearest.position));

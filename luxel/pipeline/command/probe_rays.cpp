@@ -96,7 +96,7 @@ Result<Place> find_place(const ProbeSettings& s, const scene::Scene& scene, Prob
   const NearestSurface nearest = nearest_surface(scene, s.at, s.normal);
   const double diagonal_m = double(scene::world_bounds(scene).diagonal());
   if (!(double(nearest.distance_m) <= kFarFromSurfaces * diagonal_m))
-    return tl::unexpected(far_from_surfaces(s, diagonal_m, double(nearest.distance_m)));
+    return Failure{far_from_surfaces(s, diagonal_m, double(nearest.distance_m))};
   out.name = name_of(scene, nearest.point.instance);
   out.material = scene::material_at(scene, nearest.point).name;
   out.position = nearest.position, out.normal = nearest.normal;

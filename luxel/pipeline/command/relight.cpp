@@ -234,7 +234,7 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
                                                 progress, team));
   LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, out.data, progress));
   if (!std::isfinite(out.data.baked_error) || !std::isfinite(out.data.lamp_error))
-    return tl::unexpected(scene::overflow_at(scene, scene::world_bounds(scene).centre()));
+    return Failure{scene::overflow_at(scene, scene::world_bounds(scene).centre())};
   out.data.scene_glb = std::move(wanted.glb);
   if (out.data.usual_codec_error > s.max_error)
     out.warnings.push_back(
@@ -256,7 +256,7 @@ Result<nlohmann::json> write_relightable(const RelightSettings& s, const Relight
 namespace {
 
 /// A digest of what decides how the work is shared out, and its results.
-uint64_t digest_of(const RelightSettings& s) {
+uint64_t digest_of_settings(const RelightSettings& s) {
   Digest digest;
   digest.add(s.target), digest.add(s.resolution), digest.add(s.texels_per_metre);
   digest.add(int(s.uv)), digest.add(s.matrix.patches.count);
@@ -275,7 +275,7 @@ Result<nlohmann::json> relight_alone_or_together(const RelightSettings& s, Team*
   // A scene without light is no mistake here: its lights come later.
   if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
     LUXEL_TRY_STATUS(add_outside_light(s.outside, imported.scene));
-  LUXEL_TRY_STATUS(check_same_work(team, imported.scene, digest_of(s), progress));
+  LUXEL_TRY_STATUS(check_same_work(team, imported.scene, digest_of_settings(s), progress));
   LUXEL_TRY(Relightable made, make_relightable(std::move(imported.scene), s, progress, team));
   made.warnings.insert(made.warnings.begin(), imported.warnings.begin(), imported.warnings.end());
   return write_relightable(s, made, progress);

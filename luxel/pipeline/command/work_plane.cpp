@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "luxel/base/check.h"
+#include "luxel/base/disjoint_sets.h"
 #include "luxel/base/parallel.h"
 #include "luxel/transport/back_faces.h"
 
@@ -27,7 +28,7 @@ constexpr double kLeastArea = 0.1;
 constexpr float kUnderCeiling_m = 0.15f;
 /// Ceilings of neighbours in a room differ by this at most [m], or by a slope.
 constexpr float kLintel_m = 0.3f, kSlope = 0.5f;
-constexpr size_t kMostPoints = 4'000'000;
+constexpr size_t kMostPlanePoints = 4'000'000;
 constexpr int kEnclosureRays = 64, kBoundaryRays = 32;
 
 /// A surface that a vertical line meets from above.
@@ -239,11 +240,6 @@ void add_points(const scene::Scene& scene, const trace::RayTracer& tracer, const
   }
 }
 
-uint32_t root_of(std::vector<uint32_t>& parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// Numbers the rooms of a floor in the order of their first points.
 void find_rooms(const trace::RayTracer& tracer, Floor& floor) {
   std::vector<uint32_t> at(size_t(floor.columns) * size_t(floor.rows), scene::kNone);
@@ -286,12 +282,12 @@ Status divide(const WorkPlaneParams& params, Floor& floor) {
   // A side that is a multiple but for rounding has no cell more.
   const double columns = std::max(1.0, std::ceil(x / spacing - 1e-3));
   const double rows = std::max(1.0, std::ceil(z / spacing - 1e-3));
-  if (columns * rows > double(kMostPoints))
+  if (columns * rows > double(kMostPlanePoints))
     return fail(
         ErrorCode::bad_setting,
         "--spacing {}: a floor of {:.3g} m by {:.3g} m would have more than {} points; give "
         "a larger one",
-        spacing, x, z, kMostPoints);
+        spacing, x, z, kMostPlanePoints);
   floor.columns = int(columns), floor.rows = int(rows);
   return {};
 }

@@ -94,7 +94,7 @@ Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const Rende
     if (!picture) {
       const bool asked_for = technique.needs_bake && !s.from.empty();
       if (asked_for || picture.error().code == ErrorCode::cancelled)
-        return tl::unexpected(picture.error());
+        return Failure{picture.error()};
       out.warnings.push_back(
           fmt::format("{} is left out: {}", technique.name, picture.error().message));
       continue;

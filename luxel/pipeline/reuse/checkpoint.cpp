@@ -138,7 +138,7 @@ Result<std::vector<RecordFile>> Checkpoint::other_files(const std::string& heade
   std::vector<RecordFile> out;
   for (const fs::path& file : other_parts(settings_, file_)) {
     Result<RecordFile> other = RecordFile::open_to_read(file);
-    if (!other && !are_checkpoints) return tl::unexpected(other.error());
+    if (!other && !are_checkpoints) return Failure{other.error()};
     const std::string different = other ? difference_of(*other, header) : other.error().message;
     if (!different.empty() && are_checkpoints) {
       progress.note(fmt::format("{} is ignored: {}", file.string(), different));

@@ -101,8 +101,8 @@ Status check_all(const Options<S>& options, const S& settings) {
 
 /// The error (bad_setting) of an option that would have no effect: `user` ("--solver matrix") does
 /// not look at `flag`, and `users` do. `advice`: what else to do about it.
-tl::unexpected<Error> not_used(std::string_view user, std::string_view flag, std::string_view users,
-                               std::string_view advice = "");
+Failure not_used(std::string_view user, std::string_view flag, std::string_view users,
+                 std::string_view advice = "");
 
 /// "--a, --b and --c".
 template <class S>

@@ -20,8 +20,8 @@ Status out_of_range(std::string_view flag, const std::string& value, const Range
               range.advice.empty() ? "" : "; ", range.advice);
 }
 
-tl::unexpected<Error> not_used(std::string_view user, std::string_view flag, std::string_view users,
-                               std::string_view advice) {
+Failure not_used(std::string_view user, std::string_view flag, std::string_view users,
+                 std::string_view advice) {
   return fail(ErrorCode::bad_setting, "{} does not use {}; leave {} out (it is for {}){}{}", user,
               flag, flag, users, advice.empty() ? "" : "; ", advice);
 }

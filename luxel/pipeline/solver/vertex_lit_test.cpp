@@ -10,12 +10,12 @@ namespace luxel::pipeline {
 namespace {
 
 /// A cube, mirrored and moved, whose light is a function of the place.
-struct Lit {
+struct LitVertices {
   scene::Scene scene;
   hemicube::Field field;
 };
-Lit lit_cube(hemicube::ElementKind kind) {
-  Lit out;
+LitVertices lit_cube(hemicube::ElementKind kind) {
+  LitVertices out;
   scene::add_material(out.scene, "gray", {0.5f, 0.5f, 0.5f});
   out.scene.materials[0].emission = {2, 2, 2};
   scene::Mesh cube;
@@ -33,7 +33,7 @@ Lit lit_cube(hemicube::ElementKind kind) {
 }
 
 TEST(VertexLit, ColorsTimesIntensityAreTheLight) {
-  const Lit lit = lit_cube(hemicube::ElementKind::vertex);
+  const LitVertices lit = lit_cube(hemicube::ElementKind::vertex);
   const VertexLit out = vertex_lit(lit.scene, lit.field);
   ASSERT_EQ(out.scene.meshes.size(), 1u);
   const scene::Mesh& mesh = out.scene.meshes[0];
@@ -64,7 +64,7 @@ TEST(VertexLit, ColorsTimesIntensityAreTheLight) {
 }
 
 TEST(VertexLit, LightPerTriangleSplitsAllVertices) {
-  const Lit lit = lit_cube(hemicube::ElementKind::triangle);
+  const LitVertices lit = lit_cube(hemicube::ElementKind::triangle);
   const VertexLit out = vertex_lit(lit.scene, lit.field);
   const scene::Mesh& mesh = out.scene.meshes[0];
   ASSERT_EQ(mesh.positions.size(), 3 * lit.field.mesh.triangle_count);
@@ -74,18 +74,18 @@ TEST(VertexLit, LightPerTriangleSplitsAllVertices) {
 }
 
 TEST(VertexLit, TheScenesOwnColorsMultiply) {
-  Lit lit = lit_cube(hemicube::ElementKind::vertex);
+  LitVertices lit = lit_cube(hemicube::ElementKind::vertex);
   lit.scene.meshes[0].colors.assign(8, {0.5f, 0.25f, 1});
   const VertexLit out = vertex_lit(lit.scene, lit.field);
   for (const Rgb& c : out.scene.meshes[0].colors) EXPECT_NEAR(c.z * out.intensity, 7, 1e-5f);
-  const Lit plain = lit_cube(hemicube::ElementKind::vertex);
+  const LitVertices plain = lit_cube(hemicube::ElementKind::vertex);
   const VertexLit other = vertex_lit(plain.scene, plain.field);
   EXPECT_EQ(out.intensity, other.intensity);
 }
 
 // Darkness has a white level, too.
 TEST(VertexLit, WithoutLightIsBlack) {
-  Lit lit = lit_cube(hemicube::ElementKind::vertex);
+  LitVertices lit = lit_cube(hemicube::ElementKind::vertex);
   for (Rgb& e : lit.field.irradiance) e = {};
   const VertexLit out = vertex_lit(lit.scene, lit.field);
   EXPECT_EQ(out.intensity, 1);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "luxel/atlas/keep_uv.h"
+#include "luxel/base/disjoint_sets.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
@@ -33,11 +34,6 @@ struct Shells {
   std::vector<uint8_t> closed;                    ///< every edge has triangles on both sides
   std::vector<std::vector<uint32_t>> candidates;  ///< triangles that may need a back
 };
-
-uint32_t root_of(std::vector<uint32_t>& parent, uint32_t v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
 
 /// What scatters light through itself is lit on both sides, inside of lampshades as well.
 bool scatters(const scene::Scene& scene, const scene::Mesh& mesh, uint32_t triangle) {
@@ -166,20 +162,21 @@ ShellScene shell_scene_of(const scene::Scene& scene, const trace::RayTracer& tra
   return shell_scene;
 }
 
-enum class Step : uint8_t { on, out, stuck };
+enum class Verdict : uint8_t { on, out, stuck };
 
-Step judge(const ShellScene& shell_scene, const Placed& own, const trace::Ray& ray,
-           const trace::Hit& hit) {
-  if (!hit.found()) return shell_scene.sky_shines ? Step::out : Step::stuck;
+Verdict judge(const ShellScene& shell_scene, const Placed& own, const trace::Ray& ray,
+              const trace::Hit& hit) {
+  if (!hit.found()) return shell_scene.sky_shines ? Verdict::out : Verdict::stuck;
   if (hit.back_face && !scene::reflects_from_behind(material_at(shell_scene.scene, hit.point())))
-    return Step::stuck;
+    return Verdict::stuck;
   const Vec3 p = ray.origin + ray.direction * hit.t;
-  if (!contains(own.surroundings, p)) return !own.closed || !hit.back_face ? Step::out : Step::on;
+  if (!contains(own.surroundings, p))
+    return !own.closed || !hit.back_face ? Verdict::out : Verdict::on;
   const Shells& shells = shell_scene.shells_at(hit.instance);
   const uint32_t shell = shells.of_triangle[hit.triangle];
-  if (hit.back_face || (hit.instance == own.instance && shell == own.shell)) return Step::on;
+  if (hit.back_face || (hit.instance == own.instance && shell == own.shell)) return Verdict::on;
   const Mat34& m = shell_scene.scene.instances[hit.instance].world_from_object;
-  return contains(own.box, moved(m, shells.bounds[shell])) ? Step::out : Step::on;
+  return contains(own.box, moved(m, shells.bounds[shell])) ? Verdict::out : Verdict::on;
 }
 
 trace::Ray ray_from(const ShellScene& shell_scene, const scene::SurfacePoint& p, Vec3 side,
@@ -215,8 +212,8 @@ bool gets_out(const ShellScene& shell_scene, const Placed& own, const scene::Sur
   if (sees_light(shell_scene, ray.origin, behind, random)) return true;
   for (uint32_t step = 0; step < kSteps; ++step) {
     const trace::Hit hit = shell_scene.tracer.closest_hit(ray);
-    const Step what = judge(shell_scene, own, ray, hit);
-    if (what != Step::on) return what == Step::out;
+    const Verdict what = judge(shell_scene, own, ray, hit);
+    if (what != Verdict::on) return what == Verdict::out;
     const Vec3 front = scene::front_normal(shell_scene.scene, hit.instance, hit.triangle);
     ray = ray_from(shell_scene, hit.point(), hit.back_face ? -front : front, random);
   }
@@ -264,7 +261,7 @@ std::vector<Placed> placed_shells(const scene::Scene& scene, const std::vector<S
 bool may_be_kept(const WrongSides& wrong) { return wrong.shown <= kMostShownWrong; }
 
 /// A share that was counted at a thousand points, to the digits that this knows.
-std::string percent(double share) {
+std::string rough_percent(double share) {
   return share < 0.1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
@@ -279,12 +276,12 @@ std::vector<std::string> what_uv1_shows(size_t count, const std::optional<WrongS
     return {fmt::format(
         "TEXCOORD_1 is not kept: it has one place for both sides of double-sided surfaces, so {} "
         "of it would show the light of the wrong side; --uv keep keeps it anyway",
-        percent(wrong->shown))};
+        rough_percent(wrong->shown))};
   if (wrong->all == 0) return {};
   return {fmt::format(
       "TEXCOORD_1 has one place for both sides of double-sided surfaces: seen from behind, {} of "
       "it shows the light of the front; --uv unwrap gives each side its own place",
-      percent(wrong->all))};
+      rough_percent(wrong->all))};
 }
 
 }  // namespace

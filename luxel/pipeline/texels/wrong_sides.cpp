@@ -15,8 +15,8 @@
 namespace luxel::pipeline {
 namespace {
 
-constexpr size_t kPoints = 1024, kPointsOfMean = 256;
-constexpr int kPaths = 64, kPathsOfMean = 16;
+constexpr size_t kSidePoints = 1024, kPointsOfMean = 256;
+constexpr int kSidePaths = 64, kPathsOfMean = 16;
 /// Points between two looks at whether the work was cancelled.
 constexpr size_t kPointsAtOnce = 64;
 constexpr uint64_t kPointSeed = 0x7369646573;
@@ -24,7 +24,7 @@ constexpr uint64_t kPointSeed = 0x7369646573;
 constexpr float kSameShare = 0.25f, kDarkShare = 0.1f;
 constexpr float kStandardErrors = 2;
 /// Light of this share of the other side's is none.
-constexpr float kNoLight = 1e-3f;
+constexpr float kNoLightBehind = 1e-3f;
 /// Eyes that look back at a point, and directions downwards that each looks in.
 constexpr uint32_t kEyes = 8, kLooks = 32;
 /// Shares: fronts among the surfaces below an eye where somebody may stand; surfaces among all that
@@ -72,9 +72,9 @@ Spread spread_over(const scene::Scene& scene, const std::vector<std::vector<uint
   for (const Part& part : parts)
     below.push_back(below.back() + 0.5 * (part.surface / surface + (uv > 0 ? part.uv / uv : 0)));
   Spread out;
-  out.share_each = below.back() / kPoints;
+  out.share_each = below.back() / kSidePoints;
   RandomStream random{hash64(kPointSeed)};
-  for (size_t k = 0; k < kPoints; ++k) {
+  for (size_t k = 0; k < kSidePoints; ++k) {
     const double at = (double(k) + double(random.next())) * out.share_each;
     const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, at);
     out.points.push_back(parts[size_t(found - below.begin()) - 1].triangle);
@@ -182,21 +182,21 @@ struct PointLight {
   }
   /// The front lies within something that no light enters.
   bool front_is_black(size_t k) const {
-    return is_known ? fronts[k].luminance <= kNoLight * backs[k].luminance : !fronts[k].seen;
+    return is_known ? fronts[k].luminance <= kNoLightBehind * backs[k].luminance : !fronts[k].seen;
   }
 };
 
 WrongSides count_wrong(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const Spread& spread, const PointLight& light) {
   const float diagonal_m = scene::world_bounds(scene).diagonal();
-  std::vector<uint8_t> shown(kPoints);
-  parallel_for(kPoints, 16, [&](size_t begin, size_t end) {
+  std::vector<uint8_t> shown(kSidePoints);
+  parallel_for(kSidePoints, 16, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k)
       shown[k] = light.is_wrong(k) && is_looked_at(scene, tracer, spread.points[k], diagonal_m,
                                                    light.front_is_black(k), hash64(kPointSeed, k));
   });
   WrongSides out;
-  for (size_t k = 0; k < kPoints; ++k) {
+  for (size_t k = 0; k < kSidePoints; ++k) {
     if (light.is_wrong(k)) out.all += spread.share_each;
     if (shown[k]) out.shown += spread.share_each;
   }
@@ -210,11 +210,11 @@ Result<WrongSides> wrong_sides(const scene::Scene& scene,
                                Progress& progress) {
   const Spread spread = spread_over(scene, open);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  progress.begin("light of sides", 2 * kPoints + kPointsOfMean);
+  progress.begin("light of sides", 2 * kSidePoints + kPointsOfMean);
   // Without light the paths only say which sides are seen.
   PointLight light;
   light.is_known = light_is == LightIs::known;
-  const reference::PathParams paths{kPaths, light.is_known ? -1 : 0};
+  const reference::PathParams paths{kSidePaths, light.is_known ? -1 : 0};
   LUXEL_TRY(light.fronts, light_of(scene, tracer, spread.points, 1, paths, progress));
   LUXEL_TRY(light.backs, light_of(scene, tracer, spread.points, -1, paths, progress));
   LUXEL_TRY(const std::vector<SideLight> all,

@@ -84,7 +84,7 @@ class Sender {
     if (made)
       out = std::move(*made);
     else if (status_)
-      status_ = tl::unexpected(made.error());
+      status_ = Failure{made.error()};
   }
   const Status& status() const { return status_; }
 
@@ -94,7 +94,7 @@ class Sender {
   }
   VkDeviceAddress hold(Result<gpu::Buffer> buffer) {
     if (!buffer) {
-      if (status_) status_ = tl::unexpected(buffer.error());
+      if (status_) status_ = Failure{buffer.error()};
       return 0;
     }
     to_.held.push_back(std::move(*buffer));

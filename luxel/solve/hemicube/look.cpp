@@ -201,7 +201,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
   const size_t groups = (from.size() + kTileElements - 1) / kTileElements;
   const auto own = share_out(params.team, groups, progress, look_from_group);
   LUXEL_TRY_STATUS(status);
-  if (!own) return tl::unexpected(own.error());
+  if (!own) return Failure{own.error()};
   return sum;
 }
 

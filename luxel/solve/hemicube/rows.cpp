@@ -120,7 +120,7 @@ Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb>
       const auto tile = rows.store.get(t, buffer);
       if (!tile) {
         const std::lock_guard lock(mutex);
-        status = tl::unexpected(tile.error());
+        status = Failure{tile.error()};
         return;
       }
       // Each row's columns follow from their steps.

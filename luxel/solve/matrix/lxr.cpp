@@ -69,8 +69,7 @@ std::string readable(const Tag& tag) {
 }
 
 template <class... Args>
-tl::unexpected<Error> fault(const std::string& where, fmt::format_string<Args...> text,
-                            Args&&... args) {
+Failure fault(const std::string& where, fmt::format_string<Args...> text, Args&&... args) {
   return fail(ErrorCode::bad_input, "{}: {}; the file is damaged: copy or make it again", where,
               fmt::format(text, std::forward<Args>(args)...));
 }
@@ -85,7 +84,7 @@ Result<Header> read_header(std::span<const std::byte> bytes, const std::string& 
                 "{}: is not an .lxr file: its first bytes are not those of one; "
                 "`luxel relight` makes one from a scene",
                 name);
-  if (reader.error()) return tl::unexpected(*reader.error());
+  if (reader.error()) return Failure{*reader.error()};
   if (header.crc != crc_of(bytes.first(kHeaderBytes - sizeof header.crc)))
     return fault(name, "header, byte 0: the checksum is wrong");
   if (header.major != kLxrMajor)
@@ -143,7 +142,7 @@ Status read_chunk(std::span<const std::byte> bytes, std::span<Chunk> chunks, Tag
                 fmt::format("{}: chunk '{}'", name, readable(tag)), chunk->offset);
   read_fields(reader);
   reader.end();
-  if (reader.error()) return tl::unexpected(*reader.error());
+  if (reader.error()) return Failure{*reader.error()};
   chunk->read = true;
   return {};
 }

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "luxel/base/check.h"
+#include "luxel/base/disjoint_sets.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
@@ -270,19 +271,15 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
     known.push_back({parts[p].middle, parts[p].material, p}), voxel.push_back(parts[p].voxel);
   const PatchLocator locator(grid, voxel, known);
   // A forest of parts that are joined; the smallest are asked first.
-  std::vector<uint32_t> root(parts.size()), order(parts.size());
-  std::iota(root.begin(), root.end(), 0u), std::iota(order.begin(), order.end(), 0u);
+  std::vector<uint32_t> parent(parts.size()), order(parts.size());
+  std::iota(parent.begin(), parent.end(), 0u), std::iota(order.begin(), order.end(), 0u);
   std::vector<double> area(parts.size());
   for (size_t p = 0; p < parts.size(); ++p) area[p] = double(parts[p].area_m2);
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return parts[a].area_m2 < parts[b].area_m2; });
-  const auto root_of = [&](uint32_t p) {
-    while (root[p] != p) p = root[p] = root[root[p]];
-    return p;
-  };
   std::vector<uint32_t> near;
   for (const uint32_t p : order) {
-    const uint32_t mine = root_of(p);
+    const uint32_t mine = root_of(parent, p);
     if (parts[p].hidden) continue;
     if (area[mine] > kSmall * mean_area_m2) continue;
     // The nearest part that is alike, seen, and leaves the two together small enough.
@@ -292,15 +289,15 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
     float least = INFINITY;
     for (const uint32_t q : near) {
       const Vec3 d = parts[q].middle.position - middle.position;
-      if (root_of(q) == mine || parts[q].hidden || parts[q].material != parts[p].material ||
-          dot(d, d) >= least || area[root_of(q)] + area[mine] > kLarge * mean_area_m2 ||
+      if (root_of(parent, q) == mine || parts[q].hidden || parts[q].material != parts[p].material ||
+          dot(d, d) >= least || area[root_of(parent, q)] + area[mine] > kLarge * mean_area_m2 ||
           dot(parts[q].middle.normal, middle.normal) < kSameDirection ||
           !see_each_other(tracer, middle, parts[q].middle, grid.voxel_m))
         continue;
-      best = root_of(q), least = dot(d, d);
+      best = root_of(parent, q), least = dot(d, d);
     }
     if (best == kNone) continue;
-    root[mine] = best, area[best] += area[mine];
+    parent[mine] = best, area[best] += area[mine];
   }
   // Roots become patches.
   std::vector<uint32_t> number(parts.size(), kNone), patch(parts.size());
@@ -310,7 +307,7 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
       patch[p] = kNone;
       continue;
     }
-    uint32_t& n = number[root_of(p)];
+    uint32_t& n = number[root_of(parent, p)];
     if (n == kNone) n = count++;
     patch[p] = n;
   }

@@ -109,7 +109,7 @@ bool RayTracer::Impl::add_top() {
 
 namespace {
 
-tl::unexpected<Error> no_memory(const scene::Scene& scene) {
+Failure no_memory(const scene::Scene& scene) {
   return fail(ErrorCode::out_of_memory,
               "no memory for the ray tracing structure of {} meshes; close other programs or "
               "simplify the scene",

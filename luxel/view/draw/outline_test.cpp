@@ -38,7 +38,7 @@ std::array<uint8_t, 3> pixel(const image::Image8& picture, size_t x, size_t y) {
 
 /// Squares of 4 m and 1 m by 1 m, in two materials each, seen by parallel rays: a pixel is 0.1 m.
 /// The small one stands behind the large one, 2.5 m to the right: it is seen in part.
-scene::Scene two_squares() {
+scene::Scene squares_side_by_side() {
   scene::Scene out;
   out.materials.resize(2);
   for (const float half : {2.0f, 0.5f}) {
@@ -62,7 +62,7 @@ Frame from_the_front() {
 }
 
 TEST_F(OutlineTest, ALineGoesAroundWhatIsSelected) {
-  const DeviceScene scene = put(two_squares());
+  const DeviceScene scene = put(squares_side_by_side());
   Frame frame = from_the_front();
   const image::Image8 picture = draw(scene, frame);
   const std::array<uint8_t, 3> white{255, 255, 255}, red{255, 0, 0}, black{0, 0, 0};

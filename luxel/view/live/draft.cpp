@@ -56,7 +56,7 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
   };
   const auto baked = pipeline::bake_read_scene(scene, settings, own, {}, observer);
   LUXEL_TRY_STATUS(stopped(watched));
-  if (!has_light && !baked) return tl::unexpected(baked.error());
+  if (!has_light && !baked) return Failure{baked.error()};
   return has_light;
 }
 
@@ -75,7 +75,7 @@ Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
     lit = light_draft(scene, draft_settings(settings, params, side), watched, *out);
     if (lit || lit.error().code != ErrorCode::bad_setting) break;  // else charts do not fit
   }
-  if (!lit) return tl::unexpected(lit.error());
+  if (!lit) return Failure{lit.error()};
   if (!*lit) return nullptr;
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
   out->tracer.emplace(std::move(tracer));

@@ -46,7 +46,7 @@ Status tell_lamps_apart(const LampLightParams& params, KnownLight& known, Progre
       light::direct_light(known.scene, elements, lamps, *known.tracer, averaging.direct, progress));
   const light::TexelScene in{known.scene, known.atlas, known.map, elements, lamps, *known.tracer};
   if (auto averaged = light::supersample(in, averaging, direct, progress); !averaged)
-    return tl::unexpected(averaged.error());
+    return Failure{averaged.error()};
   known.of_lamps = std::move(direct.irradiance);
   return {};
 }

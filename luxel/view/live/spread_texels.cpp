@@ -37,14 +37,14 @@ std::array<int, 3> cube_of(Vec3 at) {
 std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
 
 /// Towards +x, -x, +y, ...
-int axis_of(int k, float component) { return 2 * k + (component < 0 ? 1 : 0); }
+int component_axis(int k, float component) { return 2 * k + (component < 0 ? 1 : 0); }
 
 int main_axis(Vec3 normal) {
   const auto n = array_of(normal);
   int k = 0;
   for (int i = 1; i < 3; ++i)
     if (std::abs(n[size_t(i)]) > std::abs(n[size_t(k)])) k = i;
-  return axis_of(k, n[size_t(k)]);
+  return component_axis(k, n[size_t(k)]);
 }
 
 /// The finest side of cells by which there are about `most` of them: each texel is as large as the
@@ -177,7 +177,7 @@ size_t SpreadTexels::shares_at(size_t texel, std::array<CellShare, kMostShares>&
   for (int k = 0; k < 3; ++k) {
     const float facing = normal[size_t(k)] * normal[size_t(k)];
     if (facing < kFacesAway) continue;
-    const int axis = axis_of(k, normal[size_t(k)]);
+    const int axis = component_axis(k, normal[size_t(k)]);
     for (int corner = 0; corner < 8; ++corner) {
       float weight = facing;
       std::array<int, 3> cube = base;

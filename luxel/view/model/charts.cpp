@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "luxel/base/disjoint_sets.h"
+
 namespace luxel::view {
 namespace {
 
@@ -59,12 +61,6 @@ std::vector<ChartEdge> edges_of(const scene::Mesh& mesh, std::span<const Vec2> l
   return out;
 }
 
-/// The one that stands for all that were united with it.
-uint32_t root_of(uint32_t i, std::vector<uint32_t>& parent) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 using EdgeIterator = std::vector<ChartEdge>::const_iterator;
 
 /// Where the run of edges ends that are alike in one member.
@@ -88,7 +84,7 @@ MeshCharts charts_of(const scene::Mesh& mesh, std::span<const Vec2> light_uv) {
     while (here != end) {
       const auto next = end_of_run(here, end, &ChartEdge::corners);
       for (auto other = here + 1; other != next; ++other)
-        parent[root_of(other->triangle, parent)] = root_of(here->triangle, parent);
+        parent[root_of(parent, other->triangle)] = root_of(parent, here->triangle);
       if (next - here == 1 && has_neighbour)
         out.seams[here->triangle] |= uint8_t(1u << here->across);
       here = next;
@@ -97,7 +93,7 @@ MeshCharts charts_of(const scene::Mesh& mesh, std::span<const Vec2> light_uv) {
   std::map<uint32_t, uint32_t> numbers;
   for (uint32_t t = 0; t < parent.size(); ++t)
     out.chart_of.push_back(
-        numbers.try_emplace(root_of(t, parent), uint32_t(numbers.size())).first->second);
+        numbers.try_emplace(root_of(parent, t), uint32_t(numbers.size())).first->second);
   out.charts = uint32_t(numbers.size());
   return out;
 }

@@ -8,9 +8,9 @@
 namespace luxel::view {
 namespace {
 
-constexpr float kSunAway = 0.35f;   ///< of the scene's diagonal: its handle, from the middle
-constexpr float kTurnAway = 0.12f;  ///< and that of a spot's direction, from the spot
-constexpr float kReach = 14;        ///< of the pointer [pixels]
+constexpr float kSunAway = 0.35f;    ///< of the scene's diagonal: its handle, from the middle
+constexpr float kTurnAway = 0.12f;   ///< and that of a spot's direction, from the spot
+constexpr float kPointerReach = 14;  ///< of the pointer [pixels]
 constexpr Rgb kYellow{1, 0.85f, 0.2f};
 
 /// All handles; those of spots' directions only where the spot is selected.
@@ -86,7 +86,7 @@ Vec3 dragged(Vec3 from, Vec2 by, std::optional<int> axis, const Walk& walk) {
 
 std::optional<Handle> handle_at(const MarkedLamps& marked, const Walk& walk, Vec2 pixel) {
   std::optional<Handle> nearest;
-  float least = kReach;
+  float least = kPointerReach;
   for (const Handle& handle : handles_of(marked)) {
     const auto at = pixel_of(walk, place_of_handle(handle, marked));
     if (!at || length(*at - pixel) > least) continue;

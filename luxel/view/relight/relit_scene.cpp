@@ -53,7 +53,7 @@ Result<std::optional<RelitOnDevice>> relit_on_device(gpu::Commands& commands,
   if (made) return std::move(*made);
   const ErrorCode code = made.error().code;
   if (code == ErrorCode::unsupported || code == ErrorCode::out_of_memory) return std::nullopt;
-  return tl::unexpected(made.error());
+  return Failure{made.error()};
 }
 
 }  // namespace

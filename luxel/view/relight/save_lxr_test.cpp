@@ -62,7 +62,7 @@ Lamps moved(const Lamps& baked) {
   return out;
 }
 
-void expect_same(const scene::PunctualLight& a, const scene::PunctualLight& b) {
+void expect_same_lamp(const scene::PunctualLight& a, const scene::PunctualLight& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_TRUE(a.kind == b.kind && a.position == b.position && a.direction == b.direction);
   EXPECT_TRUE(a.range_m == b.range_m && a.angular_radius_rad == b.angular_radius_rad);
@@ -92,7 +92,7 @@ TEST_F(SavedLxr, HasTheLampsOfTheDeskAndAllElseAsItWas) {
   for (size_t i = 0; i < 3; ++i) {
     scene::PunctualLight wanted = now_.lamps[i].light;
     if (i == 1) wanted.intensity = {};  // it is off
-    expect_same(back.lamps[i].light, wanted);
+    expect_same_lamp(back.lamps[i].light, wanted);
   }
   ASSERT_EQ(back.glows.size(), now_.glows.size());
   for (size_t m = 0; m < back.glows.size(); ++m)

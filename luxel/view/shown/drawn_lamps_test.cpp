@@ -11,7 +11,7 @@
 namespace luxel::view {
 namespace {
 
-constexpr uint32_t kSide = 96;
+constexpr uint32_t kDrawnSide = 96;
 
 class DrawnLampsTest : public testing::OnDevice {
  protected:
@@ -41,7 +41,7 @@ class DrawnLampsTest : public testing::OnDevice {
 
   /// The light of surfaces as it is shown now.
   image::Image drawn() {
-    const auto painter = make_painter(*device_, *shaders_, shown_->device, kSide, kSide);
+    const auto painter = make_painter(*device_, *shaders_, shown_->device, kDrawnSide, kDrawnSide);
     EXPECT_TRUE(painter);
     Frame frame = shown_->read->first;
     frame.show = Show::light;
@@ -50,7 +50,7 @@ class DrawnLampsTest : public testing::OnDevice {
     return std::move(*picture);
   }
   Status draw_lamps_of(const SceneNow& now) {
-    const trace::CameraRays eye(shown_->read->first.camera, int(kSide), int(kSide));
+    const trace::CameraRays eye(shown_->read->first.camera, int(kDrawnSide), int(kDrawnSide));
     return draw_lamps(*commands_, now, eye, *shown_, lamps_);
   }
 

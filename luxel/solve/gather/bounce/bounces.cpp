@@ -209,7 +209,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   progress.begin("bounces", 0);
   for (int k = 0; k < params.bounces; ++k) {
     const Result<double> change = bouncing.sweep(1);
-    if (!change) return tl::unexpected(change.error());
+    if (!change) return Failure{change.error()};
   }
   if (params.bounces >= 0) return bouncing.finished();
   // A device has no sparse sweeps: those over all of its rays take about as long as the map needs

@@ -57,7 +57,7 @@ class KeptParts : public WithFolder {
   Progress progress_;
 };
 
-void expect_same(const Gather& a, const Gather& b) {
+void expect_same_gather(const Gather& a, const Gather& b) {
   EXPECT_EQ(a.irradiance, b.irradiance);
   EXPECT_EQ(a.direct, b.direct);
   EXPECT_EQ(a.direct_variance, b.direct_variance);
@@ -88,7 +88,7 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
       uint64_t all = 0;
       {
         const auto first = store("all");
-        expect_same(solve_with(*room, params, first.get(), stores), expected);
+        expect_same_gather(solve_with(*room, params, first.get(), stores), expected);
         all = first->parts_kept();
         EXPECT_EQ(first->parts_found(), 0u);
       }
@@ -97,7 +97,7 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
       const std::vector<RecordKey> keys = found->keys();
       EXPECT_EQ(keys.size(), all);
       const auto again = store("all", std::move(*found));
-      expect_same(solve_with(*room, params, again.get(), stores), expected);
+      expect_same_gather(solve_with(*room, params, again.get(), stores), expected);
       EXPECT_EQ(again->parts_found(), all);
       EXPECT_EQ(again->parts_kept(), 0u);
       std::vector<RecordKey> half;
@@ -105,7 +105,7 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
         if (hash64(key.stage, key.part) % 2) half.push_back(key);
       copy("all", "half", half);
       const auto some = store("half", *RecordFile::open(file("half")));
-      expect_same(solve_with(*room, params, some.get(), stores), expected);
+      expect_same_gather(solve_with(*room, params, some.get(), stores), expected);
       EXPECT_EQ(some->parts_found(), half.size());
       EXPECT_EQ(some->parts_kept(), all - half.size());
     }
@@ -156,7 +156,7 @@ TEST_F(KeptParts, AreSharedOutAndGiveTheSameBits) {
       std::vector<RecordFile> all;
       for (const fs::path& one : files) all.push_back(std::move(*RecordFile::open_to_read(one)));
       PartStore found(PartStoreParams{file("merged"), "", "", 0}, progress_, {}, std::move(all));
-      expect_same(solve_with(*room, params, &found), expected);
+      expect_same_gather(solve_with(*room, params, &found), expected);
       EXPECT_GT(found.parts_found(), 0u);
     }
   }
@@ -193,7 +193,7 @@ TEST_F(KeptParts, OfAnotherSizeAreMadeAgain) {
     copy("all", "edited", keys,
          [&](Bytes& bytes) { bytes.resize(longer ? bytes.size() + 1 : bytes.size() / 2); });
     const auto edited = store("edited", *RecordFile::open(file("edited")));
-    expect_same(solve_with(*room, params, edited.get()), expected);
+    expect_same_gather(solve_with(*room, params, edited.get()), expected);
   }
 }
 
@@ -207,7 +207,7 @@ TEST_F(KeptParts, WithHitsOutsideTheMapAreMadeAgain) {
     std::fill(bytes.end() - sizeof(StoredHit), bytes.end(), std::byte{0xff});
   });
   const auto edited = store("edited", *RecordFile::open(file("edited")));
-  expect_same(solve_with(*room, params, edited.get()), expected);
+  expect_same_gather(solve_with(*room, params, edited.get()), expected);
 }
 
 // Rounds and guides are looked up by what a tile counts, and means are divided by it. Files of
@@ -223,7 +223,7 @@ TEST_F(KeptParts, WithCountsThatCannotBeAreMadeAgain) {
       std::fill_n(bytes.begin() + ptrdiff_t(at), 4, std::byte{0xff});
     });
     const auto edited = store("edited", *RecordFile::open(file("edited")));
-    expect_same(solve_with(*room, params, edited.get()), expected);
+    expect_same_gather(solve_with(*room, params, edited.get()), expected);
     EXPECT_GT(edited->parts_kept(), 0u) << "byte " << at << ": those tiles were made again";
   }
 }
@@ -235,7 +235,7 @@ TEST_F(KeptParts, AreFoundByWhatTheyWereMadeFrom) {
   GatherParams other = some_params();
   other.seed = 2;
   const auto again = store("all", *RecordFile::open(file("all")));
-  expect_same(solve_with(*room, other, again.get()), solve(*room, other));
+  expect_same_gather(solve_with(*room, other, again.get()), solve(*room, other));
   EXPECT_EQ(again->parts_found(), 0u);
 }
 

@@ -336,7 +336,7 @@ Status trace_tiles(const Round& round, const TraceParams& params, const KeptStag
     if (shared_out)
       own = std::move(*shared_out);
     else
-      done = tl::unexpected(shared_out.error());
+      done = Failure{shared_out.error()};
   }
   LUXEL_TRY_STATUS(tiles.status);
   LUXEL_TRY_STATUS(done);

@@ -154,8 +154,8 @@ Result<Pair> make_pair(const std::filesystem::path& file, Progress& progress) {
 std::string heading() {
   return fmt::format(
       "# Gallery\n\n"
-      "What `luxel bake SCENE -o OUT` gives, without any other option. Left: the bake, drawn from "
-      "its lightmap as preview.png is. Right: the same view by path tracing, "
+      "These scenes were baked by `luxel bake SCENE -o OUT`, without any other option. Left: the "
+      "bake, drawn from its lightmap as preview.png is. Right: the same view by path tracing, "
       "with the same exposure. `luxel bench gallery` wrote this page.\n\n"
       "The scenes are not luxel's, and not part of it. A scene without light gets the daylight "
       "that luxel gives by default.\n\n"

@@ -394,7 +394,7 @@ def errors_are_sentences():
     plane("floor", 4, (0, 0, 0), (0.5, 0.5, 0.5))
     lamp("POINT", (0, 0, 2), 30)
     bpy.context.preferences.addons["luxel_bake"].preferences.program = "/no/such/luxel"
-    check("'/no/such/luxel' is not there" in bake(), "a program that is not there")
+    check("'/no/such/luxel' was not found" in bake(), "a program that is not there")
     bpy.context.preferences.addons["luxel_bake"].preferences.program = LUXEL
     bpy.context.scene.luxel.size_by, bpy.context.scene.luxel.density = "DENSITY", 10000
     error = bake()

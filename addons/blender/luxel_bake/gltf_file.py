@@ -15,7 +15,7 @@ def read(path):
     with open(path, "rb") as file:
         data = file.read()
     if len(data) < 20 or struct.unpack_from("<II", data) != (MAGIC, VERSION):
-        raise ValueError(f"{path} is no binary glTF file")
+        raise ValueError(f"{path} is not a binary glTF file")
     document, binary, at = None, b"", 12
     while at + 8 <= len(data):
         size, kind = struct.unpack_from("<II", data, at)
@@ -26,7 +26,7 @@ def read(path):
             binary = chunk
         at += 8 + size
     if document is None:
-        raise ValueError(f"{path} has no JSON in it")
+        raise ValueError(f"{path} contains no JSON")
     return document, binary
 
 

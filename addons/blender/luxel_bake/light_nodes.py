@@ -293,7 +293,7 @@ def scene_materials():
             if known is None or known.type == "BSDF_DIFFUSE":
                 stand.show_as_principled(known)
             if known is None:
-                about.append(f"luxel does not know the shader of '{material.name}' and takes it for grey.")
+                about.append(f"luxel does not know the shader of '{material.name}' and bakes it as grey.")
         yield about
     finally:
         for stand in stands:

@@ -37,11 +37,11 @@ def check(context):
         raise ValueError("No mesh is selected" if settings.objects == "SELECTED" else "There is no visible mesh")
     linked = [one for one in objects if one.library is not None]
     if linked:
-        raise ValueError(f"{names_of(linked)}: linked from another file; make it local")
+        raise ValueError(f"Linked from another file: {names_of(linked)}; make them local")
     full = [one for one in objects if len(one.data.uv_layers) >= MOST_UV_MAPS and
             light_nodes.UV_NAME not in one.data.uv_layers]
     if full:
-        raise ValueError(f"{names_of(full)}: eight UV maps, which is as many as Blender allows; remove one")
+        raise ValueError(f"No room for another UV map in {names_of(full)}: Blender allows eight; remove one")
     changed = [one for one in objects if results.changed_by_modifiers(context, one)]
     if changed and not settings.apply_modifiers:
         raise ValueError(f"Modifiers change the faces of {names_of(changed)}; tick Apply modifiers, or apply them")
@@ -73,12 +73,12 @@ class Work:
         report = self.bake.finish()
         scene = bpy.data.scenes.get(self.scene)
         if scene is None:
-            raise RuntimeError("The scene of the bake is not there any more")
+            raise RuntimeError("The baked scene no longer exists")
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
         objects = [scene.objects[name] for name in self.objects if name in scene.objects]
         gone = [name for name in self.objects if name not in scene.objects]
-        about = [f"'{name}' is not there any more." for name in gone]
+        about = [f"'{name}' is no longer in the scene." for name in gone]
         with context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
             about += results.apply(bpy.context, objects, self.folder, report, self.packs)
         return self.about + self.bake.warnings + about
@@ -177,7 +177,7 @@ class LUXEL_OT_cancel(bpy.types.Operator):
 
 
 class LUXEL_OT_remove(bpy.types.Operator):
-    """Take the lightmaps out of the scene's materials and meshes"""
+    """Remove the lightmaps from the scene's materials and meshes"""
 
     bl_idname, bl_label = "luxel.remove", "Remove"
     bl_options = {"REGISTER", "UNDO"}

@@ -19,7 +19,7 @@ def find_luxel(stated):
     """The program to run. Raises ValueError: there is none."""
     found = shutil.which(os.path.expanduser(stated) or "luxel")
     if found is None:
-        raise ValueError(f"'{stated}' is not there; say in the add-on's preferences where luxel is")
+        raise ValueError(f"'{stated}' was not found; set the path of luxel in the add-on's preferences")
     return found
 
 

@@ -45,14 +45,14 @@ def about_what_is_left_out(context):
     hidden = [one.name for one in context.view_layer.objects
               if one.type in {"MESH", "LIGHT"} and not one.hide_render and not one.visible_get()]
     if hidden:
-        about.append(f"Hidden in the viewport, so not in the bake: {', '.join(hidden[:5])}.")
+        about.append(f"Hidden in the viewport and left out of the bake: {', '.join(hidden[:5])}.")
     for one in context.view_layer.objects:
         if one.type != "LIGHT" or not takes_part(one):
             continue
         if one.data.type == "AREA" and one.data.spread < math.pi - 1e-3:
-            about.append(f"Area lamp '{one.name}' has a spread of less than 180 degrees, which luxel does not know.")
+            about.append(f"Area lamp '{one.name}' has a spread of less than 180 degrees; luxel ignores the spread.")
         if one.data.use_nodes:
-            about.append(f"Lamp '{one.name}' has nodes, which luxel does not know.")
+            about.append(f"Lamp '{one.name}' has nodes; luxel does not support them.")
     return about
 
 
@@ -243,7 +243,7 @@ def write_scene(context, path):
     """Writes the scene for a bake; it is afterwards as it was before. Returns sentences about what luxel takes
     otherwise."""
     if not hasattr(bpy.types, "EXPORT_SCENE_OT_gltf"):
-        raise ValueError("Blender's own add-on for glTF 2.0 is off; tick it in the preferences")
+        raise ValueError("Blender's glTF 2.0 add-on is off; enable it in the preferences")
     meshes = meshes_in(context)
     wanted = {one.name for one in baked_objects(context)}
     with light_nodes.scene_materials() as about, without_lightmap_uvs(meshes), area_lamps_as_surfaces(context) as radiances:
@@ -282,7 +282,7 @@ def turn_of_input(mapping):
 def world_light(context, folder):
     """Options for the light of the scene's world, and what of it luxel does not take, as a sentence or ''."""
     world = context.scene.world
-    unknown = background((0, 0, 0)), "luxel does not know the world's shader and takes it for black."
+    unknown = background((0, 0, 0)), "luxel does not know the world's shader and bakes it as black."
     if context.scene.luxel.sky != "WORLD" or world is None:
         return background((0, 0, 0)), ""
     if not world.use_nodes:

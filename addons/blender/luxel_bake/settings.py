@@ -7,7 +7,7 @@ class LuxelPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
     program: StringProperty(name="luxel", subtype="FILE_PATH", default="luxel",
-                            description="The program, or its name where the search path finds it")
+                            description="Path of the program luxel; its name is enough if it is on the search path")
 
     def draw(self, context):
         self.layout.prop(self, "program")
@@ -20,62 +20,62 @@ def show_mode(settings, context):
 
 class LuxelSettings(bpy.types.PropertyGroup):
     objects: EnumProperty(
-        name="Objects", default="VISIBLE", description="Which meshes get a lightmap; the others still give and take light",
-        items=[("VISIBLE", "Visible", "All meshes that are seen and rendered"),
-               ("SELECTED", "Selected", "Those of them that are selected")])
+        name="Objects", default="VISIBLE", description="Meshes that get a lightmap; the others still block, reflect and emit light",
+        items=[("VISIBLE", "Visible", "All meshes visible in the viewport and in renders"),
+               ("SELECTED", "Selected", "The selected ones among the visible meshes")])
     size_by: EnumProperty(
         name="Size by", default="RESOLUTION",
-        items=[("RESOLUTION", "Resolution", "Texels along a side of the lightmap"),
-               ("DENSITY", "Density", "Texels along a metre")])
+        items=[("RESOLUTION", "Resolution", "Texels along each side of the lightmap"),
+               ("DENSITY", "Density", "Texels per metre of surface")])
     resolution: IntProperty(name="Resolution", default=1024, min=16, max=16384, subtype="PIXEL")
     density: FloatProperty(name="Texels per metre", default=16, min=0.01, max=10000,
-                           description="Texels along a metre")
+                           description="Texels per metre of surface")
     solver: EnumProperty(
         name="Solver", default="gather",
         items=[("gather", "Gather", "Random rays from each texel; suits every scene"),
                ("matrix", "Matrix", "Bounces between patches; results within seconds"),
                ("hemicube", "Hemicube", "Light at the vertices of a refined mesh; no noise"),
-               ("hierarchical", "Hierarchical", "Follows the edges of shadows, in plain scenes"),
+               ("hierarchical", "Hierarchical", "Mesh that follows shadow edges; for simple scenes"),
                ("reference", "Reference", "Path tracing; slow, for comparisons")])
     quality_by: EnumProperty(
         name="Quality by", default="QUALITY",
         items=[("QUALITY", "Preset", "Draft, good or best"),
                ("SAMPLES", "Samples", "Rays from each texel"),
-               ("ERROR", "Error", "Rays until the light errs by less than this")])
+               ("ERROR", "Error", "Rays until the error of the light is below this")])
     quality: EnumProperty(name="Quality", default="good",
-                          items=[("draft", "Draft", "For a look"), ("good", "Good", ""), ("best", "Best", "")])
+                          items=[("draft", "Draft", "For a quick look"), ("good", "Good", ""), ("best", "Best", "")])
     samples: IntProperty(name="Samples", default=256, min=1, max=65535)
     max_error: FloatProperty(name="Largest error", default=0.02, min=0.0001, max=1, precision=4,
-                             description="As a part of the light: 0.02 is 2 %")
+                             description="As a fraction of the light: 0.02 is 2 %")
     denoise: BoolProperty(name="Denoise", default=True)
     sky: EnumProperty(
         name="Sky", default="WORLD",
-        items=[("WORLD", "World", "The colour or the picture of the scene's world"),
+        items=[("WORLD", "World", "The colour or picture of the scene's world"),
                ("SKY", "Clear sky", "A clear sky with its sun"),
                ("NONE", "None", "No light from outside")])
     sun_azimuth: FloatProperty(name="Sun's bearing", default=2.356194, subtype="ANGLE",
-                               description="0 is Blender's Y axis, 90 degrees its X axis")
+                               description="0 degrees is Blender's Y axis, 90 degrees its X axis")
     sun_elevation: FloatProperty(name="Sun's elevation", default=0.698132, subtype="ANGLE", min=0, max=1.570796)
     layers: EnumProperty(
         name="Layers", default="none",
         items=[("none", "None", "One lightmap of all light"),
-               ("per-light", "Per light", "A lightmap of each light, to be mixed"),
-               ("groups", "Groups", "A lightmap of lights whose names differ only by a number at the end")])
+               ("per-light", "Per light", "One lightmap per light; mix them in the panel"),
+               ("groups", "Groups", "One lightmap for all lights whose names differ only by a number at the end")])
     folder: StringProperty(name="Folder", subtype="DIR_PATH", default="//baked",
-                           description="Where the lightmaps lie; beside the .blend file by default")
+                           description="Folder of the lightmaps; by default beside the .blend file")
     apply_modifiers: BoolProperty(
         name="Apply modifiers", default=False,
-        description="Replace objects whose modifiers change their faces by what the modifiers make of them. "
-                    "Without it a scene with such objects is not baked")
+        description="Apply the modifiers of every object whose faces they change. "
+                    "If this is off, luxel refuses scenes with these objects")
     keep: BoolProperty(
         name="Keep for the next bake", default=True,
-        description="The next bake traces only rays that an edit can have changed. Takes about nine bytes for each "
-                    "ray, in the folder")
+        description="The next bake traces only rays that an edit can have changed. Takes about nine bytes per ray "
+                    "in the folder")
     show: EnumProperty(
         name="Show", default="BAKED", update=show_mode,
         items=[("BAKED", "Baked", "Surfaces in their colours, lit by the lightmap"),
                ("LIGHT", "Light alone", "The light on white surfaces"),
-               ("SCENE", "Scene", "The materials as they were")])
+               ("SCENE", "Scene", "The materials as they were before the bake")])
 
 
 class LuxelState(bpy.types.PropertyGroup):

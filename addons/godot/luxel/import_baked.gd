@@ -86,7 +86,7 @@ func _lightmap(file: String) -> ImageTexture:
 		var path := get_source_file().get_base_dir().path_join(file)
 		var image := Image.load_from_file(ProjectSettings.globalize_path(path))
 		if image == null or image.is_empty():
-			push_error("%s is missing or no EXR file; copy it from the folder of the bake" % path)
+			push_error("%s is missing or not an EXR file; copy it from the folder of the bake" % path)
 			_lightmaps[file] = null
 		else:
 			_lightmaps[file] = ImageTexture.create_from_image(image)

@@ -126,7 +126,7 @@ async function open() {
   const renderer = makeRenderer();
   const side = Math.max(...about.light.map(({ width, height }) => Math.max(width, height)));
   if (side > renderer.capabilities.maxTextureSize)
-    throw new Error(`This device shows textures of ${renderer.capabilities.maxTextureSize} texels a side; the lightmap has ${side}.`);
+    throw new Error(`This device supports textures of up to ${renderer.capabilities.maxTextureSize} texels a side; the lightmap has ${side}.`);
   const common = {
     exposure: { value: about.preview.exposure },
     show: { value: 0 },

@@ -79,13 +79,12 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   LUXEL_TRY_STATUS(add("stated_errors", validate_stated_errors({}, progress)));
   page.markdown = fmt::format(
       "# Validation\n\n"
-      "Is luxel right? Everything on this page was computed and written by one command, `luxel "
-      "bench validation`: view factors against closed forms, and solvers against exact solutions "
-      "and a brute-force path tracer. That one shares nothing with them but the scene and the ray "
-      "tracer ([reference.md](../method/reference.md)).\n\n"
+      "Is luxel right? One command, `luxel bench validation`, computed and wrote everything on "
+      "this page: view factors against closed forms, and solvers against exact solutions and a "
+      "brute-force path tracer. The path tracer shares only the scene and the ray tracer with the "
+      "solvers ([reference.md](../method/reference.md)).\n\n"
       "This run: version {}, {}, {} threads, {:.0f} processor seconds. The exact values are those "
-      "of "
-      "`shared/reference`.\n\n",
+      "of `shared/reference`.\n\n",
       pipeline::kVersion, machine_name(), thread_count(), processor_seconds_since(start));
   page.markdown = wrapped(page.markdown + body);
   while (page.markdown.ends_with("\n\n")) page.markdown.pop_back();

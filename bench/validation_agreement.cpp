@@ -38,12 +38,14 @@ Result<Section> validate_agreement(Progress& progress) {
   }
   section.markdown = fmt::format(
       "## Solvers against the path tracer\n\n"
-      "Small scenes, one row per solver: a new solver adds its rows by itself. The judge is two "
-      "independent runs of {} paths per texel. The mean of (g - a)(g - b) over both leaves the "
-      "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays; hemicube: "
-      "up to {} vertices. The path tracer's own row is a third run of {} paths: what is left there "
-      "is its noise. hemicube, matrix and hierarchical leave out the colour that glass gives to "
-      "indirect light (lights.md). Under \"coloured glass\" their errors are that.\n\n{}",
+      "The table has small scenes and one row per solver; a new solver gets its rows "
+      "automatically. The judge is two independent runs of {} paths per texel, a and b. For the "
+      "light g of a solver, the mean of (g - a)(g - b) keeps the solver's own error and drops the "
+      "judge's noise. gather: {} rays, {} shadow rays; hemicube: up to {} vertices. The path "
+      "tracer's own row is a third run of {} paths; its error is its noise. hemicube, matrix and "
+      "hierarchical leave out the colour that glass gives to indirect light (lights.md). This is "
+      "their error under \"coloured glass\".\n\n"
+      "{}",
       kPaths, kSamples, kDirect, kElements, kPaths,
       markdown_table({"scene", "shows", "solver", "texels", "relative RMSE", "bias", "processor s"},
                      rows));

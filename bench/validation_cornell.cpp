@@ -83,10 +83,12 @@ Status convergence(Section& section, Progress& progress) {
   section.files.push_back(svg_file("error-samples.svg", export_::svg(samples)));
   section.files.push_back(svg_file("error-seconds.svg", export_::svg(seconds)));
   section.markdown += fmt::format(
-      "### Error against samples and processor seconds\n\n{0} x {0} texels, {1} shadow rays. The "
-      "judge: "
-      "twice "
-      "{2} paths per texel, independent of those of the row \"reference\".\n\n{3}\n{4}\n{5}\n\n",
+      "### Error against samples and processor seconds\n\n"
+      "{0} x {0} texels, {1} shadow rays. The judge is two runs of {2} paths per texel, "
+      "independent of the row \"reference\".\n\n"
+      "{3}\n"
+      "{4}\n"
+      "{5}\n\n",
       kResolution, kDirect, kPaths,
       markdown_table({"solver", "samples", "processor s", "relative RMSE", "bias"}, rows),
       show(section.files[0], "Error against samples"),
@@ -237,21 +239,17 @@ Status every_texel(const validate::Prepared& p, const validate::Timed& solved, S
     rows.push_back({std::to_string(r.paths), std::to_string(r.texels), std::to_string(r.passed),
                     fmt::format("{:.0f}", r.largest)});
   section.markdown += fmt::format(
-      "### Every texel\n\nThe paper's setting: 512 x 512 texels, 200 direct and 2000 indirect "
-      "samples "
-      "([Moreno05, section 5.1]); gather took {:.0f} processor seconds. Irradiance of both is "
-      "tone\nmapped with "
-      "one "
-      "exposure. A texel passes when its difference from the path tracer plus three of the path "
-      "tracer's standard errors is below {:.0f} of 255; the others get\nmore "
-      "paths, which join those before:\n\n{}\n"
-      "Covered texels (alpha 1: their centre lies on a surface) that do not pass: **{}** of {}; "
-      "the "
-      "paper has 0.2 % of its pixels above 40. Of the {} texels that a surface only\ntouches, "
-      "whose "
-      "sample is a sliver at its edge, {} do not. Relative RMSE over all of them, the judge's "
-      "noise "
-      "taken out: **{:.2f} %**; bias {:+.3f} %.\n\n",
+      "### Every texel\n\n"
+      "The paper's setting is 512 x 512 texels with 200 direct and 2000 indirect samples "
+      "([Moreno05, section 5.1]). gather took {:.0f} processor seconds. Both irradiances are tone "
+      "mapped with one exposure. A texel passes when its difference from the path tracer plus "
+      "three of the path tracer's standard errors is below {:.0f} of 255. The other texels get "
+      "more paths, which join the earlier ones:\n\n"
+      "{}\n"
+      "Covered texels (alpha 1: their centre lies on a surface) that do not pass: **{}** of {}. "
+      "The paper has 0.2 % of its pixels above 40. {} texels are only touched by a surface, so "
+      "their sample is a sliver at its edge; of these, {} do not pass. Over all texels, without "
+      "the judge's noise, the relative RMSE is **{:.2f} %** and the bias {:+.3f} %.\n\n",
       solved.processor_seconds, kMostSteps,
       markdown_table({"paths each", "texels judged", "passed", "their largest difference"}, rows),
       off, covered, a.texels - covered, ptrdiff_t(left.size()) - off, 100 * a.relative_rmse,
@@ -315,15 +313,17 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
                  histogram_series("path tracer", image::histogram(judge.brightness, all))};
   files.push_back(svg_file("histogram.svg", export_::svg(plot)));
   section.markdown += fmt::format(
-      "### The paper's figures\n\nThe box through its camera, drawn from gather's lightmap (left) "
-      "and "
-      "path traced (right), as in figure 5.1:\n\n{} {}\n\nContours of brightness 40, 70, 90, 120, "
-      "140 "
-      "(figure 5.2):\n\n{} {}\n\nHistograms of brightness (figure 5.3):\n\n{}\n\nPixels that "
-      "differ "
-      "by more than 10, 25 and 40 of 255, black (figures 5.4 and 5.5): {}. The paper had less than "
-      "4 % "
-      "and 0.2 % above 40.\n\n{} {} {}\n",
+      "### The paper's figures\n\n"
+      "The box through its camera, drawn from gather's lightmap (left) and path traced (right), as "
+      "in figure 5.1:\n\n"
+      "{} {}\n\n"
+      "Contours of brightness 40, 70, 90, 120, 140 (figure 5.2):\n\n"
+      "{} {}\n\n"
+      "Histograms of brightness (figure 5.3):\n\n"
+      "{}\n\n"
+      "The last three pictures show in black the pixels that differ by more than 10, 25 and 40 of "
+      "255 (figures 5.4 and 5.5): {}. The paper had less than 4 % and 0.2 % above 40.\n\n"
+      "{} {} {}\n",
       show(files[0], "gather"), show(files[1], "path tracer"), show(files[2], "contours, gather"),
       show(files[3], "contours, path tracer"), show(files[7], "histograms"), shares,
       show(files[4], "above 10"), show(files[5], "above 25"), show(files[6], "above 40"));

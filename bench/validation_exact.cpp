@@ -56,21 +56,24 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
         LUXEL_TRY_STATUS(add_case(c, solver.name, rows, section.json, progress));
   section.markdown = fmt::format(
       "## Solvers against exact solutions\n\n"
-      "E [W/m^2] of scenes whose light is known in closed form (`exact-solutions.md`; the number "
-      "is its section). *mean*: of E over the part's surface, read from the lightmap at {} "
-      "places. *error of a texel*: root mean square of the relative error at the texels "
-      "themselves, where E is known pointwise. Where E is below a tenth of its mean, it is "
-      "relative to that tenth. *model*: how far the scene itself is from the formula's (facets of "
-      "a sphere).\n\n"
+      "The table has E [W/m^2] of scenes whose light is known in closed form. Its first column is "
+      "the section of `exact-solutions.md`.\n\n"
+      "- *mean*: the mean of E over the part's surface, read from the lightmap at {} places.\n"
+      "- *error of a texel*: the root mean square of the relative error at the texels, where E is "
+      "known pointwise. Where E is below a tenth of its mean, the error is relative to that "
+      "tenth.\n"
+      "- *model*: the difference between the scene and the scene of the formula (facets of a "
+      "sphere).\n\n"
       "gather takes {} rays and {} shadow rays per texel. hemicube takes {} vertices at most (more "
       "where the scene has more) and {} pixels (16 in scenes of many facets). matrix takes about "
-      "{} patches, and the path tracer (reference) {} paths, without any other help: its texels "
-      "are noisy. Its mean is that of {} paths from each of {} places over the scene, with no "
-      "lightmap between. It must lie within 4 of the *standard errors* that it prints itself. (3 "
-      "would be exceeded by chance in one of 370 rows, and there are more than 20.)\n\n"
-      "Sections 6 (one element per face) and 8 are about solvers whose form "
-      "factors are means over areas; hemicube looks from points. hierarchical is not asked for "
-      "spheres yet.\n\n{}",
+      "{} patches. The path tracer (reference) takes {} paths without any other help, so its "
+      "texels are noisy. Its mean is that of {} paths from each of {} places over the scene, "
+      "without a lightmap. The mean must lie within 4 of the *standard errors* that the path "
+      "tracer itself prints. (One of 370 rows exceeds 3 by chance, and there are more than 20.)\n\n"
+      "Section 8 and the values of section 6 for one element per face have no rows: they are for "
+      "solvers whose form factors are means over areas, and hemicube looks from points. "
+      "hierarchical has no rows for spheres yet.\n\n"
+      "{}",
       kEffort.lightmap_points, kEffort.rays, kEffort.shadow_rays, kEffort.elements,
       kEffort.hemicube, kEffort.patches, kEffort.paths, kEffort.paths_per_point,
       kEffort.path_points,

@@ -184,24 +184,20 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
       {fmt::format("hemicube over a point, slope {:.2f}", slope(hemicube_rate)), hemicube_rate}};
   section.files.push_back(svg_file("view-factors.svg", export_::svg(plot)));
   section.markdown += fmt::format(
-      "`luxel factors` computes the fraction F(A -> B) of what A radiates that reaches B. All {} "
-      "rows "
-      "of the exact table, by its three\nmethods: analytic (contour integral; past blockers "
-      "adaptive, "
-      "asked for 1e-5), hemicubes of {} pixels on {} points, {} rays.\nErrors are relative, or "
-      "absolute "
-      "where F is 0. Largest analytic error: **{:.1e}** without blockers (goal 1e-6), **{:.1e}** "
-      "with "
-      "(goal 1e-4).\nSpeed without blockers: {:.0f} pairs per second on one thread (goal "
-      "1000).\n\n{}\n"
-      "{}\n\nRays: root mean square over the {} rows of two polygons with F >= 0.02; expected is "
-      "the "
-      "power -0.5 or a little better, because points and directions are stratified.\nHemicubes: "
-      "over "
-      "the {} rows of a point, by one hemicube with 8 to 512 pixels along its edge; only pixels on "
-      "outlines are wrong, so n^-1.5, the power -0.75 of the rays, is\nexpected. Over the points "
-      "of a "
-      "surface hemicubes fall like rays.\n",
+      "`luxel factors` computes F(A -> B), the fraction of the radiation from A that reaches B. "
+      "The table has all {} rows of the exact table, by three methods: analytic (contour integral; "
+      "adaptive where there are blockers, asked for 1e-5), hemicubes of {} pixels on {} points, {} "
+      "rays. Errors are relative, or absolute where F is 0. Largest analytic error: **{:.1e}** "
+      "without blockers (goal 1e-6), **{:.1e}** with blockers (goal 1e-4). Speed without blockers: "
+      "{:.0f} pairs per second on one thread (goal 1000).\n\n"
+      "{}\n"
+      "{}\n\n"
+      "- Rays: root mean square over the {} rows of two polygons with F >= 0.02. The expected "
+      "power is -0.5 or a little better, because points and directions are stratified.\n"
+      "- Hemicubes: root mean square over the {} rows of a point, by one hemicube with n = 8 to "
+      "512 pixels along its edge. Only pixels on outlines are wrong, so the expected error falls "
+      "as n^-1.5, the power -0.75 of the rays. Over the points of a surface, the error of "
+      "hemicubes falls like that of rays.\n",
       rows.size(), kHemicubeCheck.hemicube, kHemicubeCheck.samples, kRaysCheck.samples, table.open,
       table.blocked, speed,
       markdown_table({"case", "", "exact F", "analytic", "hemicube", "rays"}, table.rows),

@@ -20,7 +20,8 @@ def show_mode(settings, context):
 
 class LuxelSettings(bpy.types.PropertyGroup):
     objects: EnumProperty(
-        name="Objects", default="VISIBLE", description="Meshes that get a lightmap; the others still block, reflect and emit light",
+        name="Objects", default="VISIBLE",
+        description="Meshes that get a lightmap; the others still block, reflect and emit light",
         items=[("VISIBLE", "Visible", "All meshes visible in the viewport and in renders"),
                ("SELECTED", "Selected", "The selected ones among the visible meshes")])
     size_by: EnumProperty(
@@ -66,7 +67,7 @@ class LuxelSettings(bpy.types.PropertyGroup):
     apply_modifiers: BoolProperty(
         name="Apply modifiers", default=False,
         description="Apply the modifiers of every object whose faces they change. "
-                    "If this is off, luxel refuses scenes with these objects")
+                    "If this is off, a scene with these objects is not baked")
     keep: BoolProperty(
         name="Keep for the next bake", default=True,
         description="The next bake traces only rays that an edit can have changed. Takes about nine bytes per ray "

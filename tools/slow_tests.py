@@ -1,32 +1,50 @@
 #!/usr/bin/env python3
-"""Writes docs/bench/tests.csv: the seconds of the slowest tests.
+"""Writes docs/bench/tests.csv: the tests that take longest, and what each one guards.
 
     make test
-    tools/slow_tests.py build/release/tests.xml --machine NAME > docs/bench/tests.csv
+    tools/slow_tests.py build/release/tests.xml --machine NAME > baked/tests.csv   each test above 3 s, the longest first
+    tools/slow_tests.py build/release/tests.xml --check                            fails if a test above 5 s has no row
 
-Columns: machine, test, seconds. The longest comes first. --self-test checks this program.
+Columns: machine, test, seconds, guards. A new table keeps what docs/bench/tests.csv says that a test guards.
+--check prints the seconds of all tests. On a slower machine than that of the table the limit is higher: by the median of the
+tests' ratios. --self-test checks this program.
 """
 
 import argparse
 import csv
+import pathlib
+import statistics
 import sys
 import xml.etree.ElementTree as xml
 
+TABLE = pathlib.Path(__file__).resolve().parent.parent / "docs/bench/tests.csv"
+WRITTEN_S, LIMIT_S = 3, 5
 
-def slowest(junit, count):
-    """(name, seconds) of the tests that ran, of a JUnit file's text, longest first."""
+
+def seconds_of(junit):
+    """{name: seconds} of the tests that ran, of a JUnit file's text."""
     cases = xml.fromstring(junit).iter("testcase")
     # A test with a parameter is called "Suite.Test/name  # GetParam() = value".
-    ran = [(case.get("name").split("  # ")[0], float(case.get("time"))) for case in cases
-           if case.get("status") == "run"]
-    return sorted(ran, key=lambda test: (-test[1], test[0]))[:count]
+    return {case.get("name").split("  # ")[0]: float(case.get("time")) for case in cases if case.get("status") == "run"}
 
 
-def write_csv(rows, machine, out):
+def table_of(text):
+    return {row["test"]: row for row in csv.DictReader(text.splitlines())}
+
+
+def new_table(seconds, old, machine, out):
     table = csv.writer(out, lineterminator="\n")
-    table.writerow(["machine", "test", "seconds"])
-    for name, seconds in rows:
-        table.writerow([machine, name, f"{seconds:.1f}"])
+    table.writerow(["machine", "test", "seconds", "guards"])
+    for name, took in sorted(seconds.items(), key=lambda test: (-test[1], test[0])):
+        if took >= WRITTEN_S:
+            table.writerow([machine, name, f"{took:.1f}", old.get(name, {}).get("guards", "")])
+
+
+def without_row(seconds, table):
+    """(name, seconds) of the tests above the limit that have no row, or one that does not say what they guard."""
+    ratios = [took / float(table[name]["seconds"]) for name, took in seconds.items() if name in table]
+    limit = LIMIT_S * max(1.0, statistics.median(ratios or [1.0]))
+    return [(name, took) for name, took in seconds.items() if took > limit and not table.get(name, {}).get("guards")]
 
 
 def self_test():
@@ -34,25 +52,43 @@ def self_test():
 <testcase name="A.Quick" time="0.04" status="run"/>
 <testcase name="B.Slow  # GetParam() = 3" time="12.34" status="run"/>
 <testcase name="C.Left" time="99" status="disabled"/>
-<testcase name="D.Slow" time="12.34" status="run"/></testsuite>"""
-    assert slowest(junit, 2) == [("B.Slow", 12.34), ("D.Slow", 12.34)], slowest(junit, 2)
-    assert slowest(junit, 9)[-1] == ("A.Quick", 0.04)
+<testcase name="D.New" time="5.5" status="run"/></testsuite>"""
+    seconds = seconds_of(junit)
+    assert seconds == {"A.Quick": 0.04, "B.Slow": 12.34, "D.New": 5.5}, seconds
+    table = "machine,test,seconds,guards\nm,B.Slow,{},a law\n"
+    assert without_row(seconds, table_of(table.format("12"))) == [("D.New", 5.5)]
+    assert without_row(seconds, table_of(table.format("6"))) == []  # a machine half as fast
+    assert without_row(seconds, table_of(table.format("12").replace("a law", ""))) == [("B.Slow", 12.34), ("D.New", 5.5)]
+
+    class Lines(list):
+        write = list.append
+
+    lines = Lines()
+    new_table(seconds, table_of(table.format("6")), "n", lines)
+    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,12.3,a law\n", "n,D.New,5.5,\n"], lines
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("junit", nargs="?")
+    parser.add_argument("junit", nargs="?", type=pathlib.Path)
     parser.add_argument("--machine", default="")
-    parser.add_argument("--count", type=int, default=30)
+    parser.add_argument("--check", action="store_true")
     parser.add_argument("--self-test", action="store_true")
     options = parser.parse_args()
     if options.self_test:
         return self_test()
     if not options.junit:
         parser.error("a JUnit file of ctest is needed")
-    with open(options.junit, encoding="utf-8") as file:
-        write_csv(slowest(file.read(), options.count), options.machine, sys.stdout)
+    seconds = seconds_of(options.junit.read_text(encoding="utf-8"))
+    table = table_of(TABLE.read_text(encoding="utf-8"))
+    if not options.check:
+        return new_table(seconds, table, options.machine, sys.stdout)
+    print(f"slow_tests: {len(seconds)} tests, {sum(seconds.values()):.0f} s")
+    faults = without_row(seconds, table)
+    for name, took in faults:
+        print(f"slow_tests: {name} takes {took:.1f} s; make it faster, or say in docs/bench/tests.csv what it guards")
+    return 1 if faults else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

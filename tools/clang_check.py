@@ -13,7 +13,7 @@ import shlex
 import subprocess
 import sys
 
-ONLY_GCC = {"-fno-semantic-interposition", "-fpch-preprocess", "-Winvalid-pch"}
+ONLY_GCC = {"-fno-semantic-interposition", "-fpch-preprocess", "-Winvalid-pch", "-Wno-maybe-uninitialized"}
 
 
 def arguments_of(command):

@@ -2,7 +2,7 @@
 """Writes docs/bench/tests.csv: the tests that take longest, and what each one guards.
 
     make test
-    tools/slow_tests.py build/release/tests.xml --machine NAME > baked/tests.csv   each test above 3 s, the longest first
+    tools/slow_tests.py build/release/tests.xml --machine NAME > baked/tests.csv   each test above 4 s, the longest first
     tools/slow_tests.py build/release/tests.xml --check                            fails if a test above 5 s has no row
 
 Columns: machine, test, seconds, guards. A new table keeps what docs/bench/tests.csv says that a test guards.
@@ -18,7 +18,7 @@ import sys
 import xml.etree.ElementTree as xml
 
 TABLE = pathlib.Path(__file__).resolve().parent.parent / "docs/bench/tests.csv"
-WRITTEN_S, LIMIT_S = 3, 5
+WRITTEN_S, LIMIT_S = 4, 5
 
 
 def seconds_of(junit):

@@ -18,8 +18,8 @@ namespace luxel::gather {
 namespace {
 
 /// Layers that a sweep looks up at once: R, G and B of five, and coverage, are one cache line.
-constexpr size_t kBlock = 5;
-constexpr size_t kLanes = 3 * kBlock + 1, kCoverage = kLanes - 1;
+constexpr size_t kLayerBlock = 5;
+constexpr size_t kLanes = 3 * kLayerBlock + 1, kCoverage = kLanes - 1;
 
 struct alignas(64) BlockTexel {
   std::array<float, kLanes> value{};
@@ -325,8 +325,8 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
   }
   const auto sweep_all = [&](size_t stride) -> Status {
     if (stride != kSparsest) subsampled.reset();
-    for (Block block; block.first < layers; block.first += kBlock) {
-      block.count = std::min(kBlock, layers - block.first);
+    for (Block block; block.first < layers; block.first += kLayerBlock) {
+      block.count = std::min(kLayerBlock, layers - block.first);
       fill_radiosity(radiosity, map, elements, hits, behind, light, block);
       const LayerSweep sweep{radiosity, sources, light,
                              block,     stride,  subsampled ? &*subsampled : nullptr};

@@ -6,12 +6,12 @@ namespace luxel::gather {
 namespace {
 
 /// A component of a direction is one of 1023 steps, from 1 on: 0 is that of no plain way.
-constexpr int kMiddle = 512, kSteps = 511;
+constexpr int kMiddle = 512, kCubeSteps = 511;
 
-uint32_t pack_component(float x) { return uint32_t(kMiddle + int(std::lround(x * kSteps))); }
+uint32_t pack_component(float x) { return uint32_t(kMiddle + int(std::lround(x * kCubeSteps))); }
 
 float unpack_component(uint32_t bits) {
-  return float(int(bits & 1023) - kMiddle) * (1.0f / float(kSteps));
+  return float(int(bits & 1023) - kMiddle) * (1.0f / float(kCubeSteps));
 }
 
 }  // namespace

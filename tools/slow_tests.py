@@ -6,8 +6,8 @@
     tools/slow_tests.py build/release/tests.xml --check                            fails if a test above 5 s has no row
 
 Columns: machine, test, seconds, guards. A new table keeps what docs/bench/tests.csv says that a test guards.
---check prints the seconds of all tests. On a slower machine than that of the table the limit is higher: by the median of the
-tests' ratios. --self-test checks this program.
+--check prints the seconds of all tests. Its limit is 1.3 times higher for noise, and higher on a slower machine than that of
+the table: by the median of the tests' ratios. --self-test checks this program.
 """
 
 import argparse
@@ -19,6 +19,7 @@ import xml.etree.ElementTree as xml
 
 TABLE = pathlib.Path(__file__).resolve().parent.parent / "docs/bench/tests.csv"
 WRITTEN_S, LIMIT_S = 4, 5
+NOISE = 1.3  # two tests run beside each other
 
 
 def seconds_of(junit):
@@ -43,7 +44,7 @@ def new_table(seconds, old, machine, out):
 def without_row(seconds, table):
     """(name, seconds) of the tests above the limit that have no row, or one that does not say what they guard."""
     ratios = [took / float(table[name]["seconds"]) for name, took in seconds.items() if name in table]
-    limit = LIMIT_S * max(1.0, statistics.median(ratios or [1.0]))
+    limit = NOISE * LIMIT_S * max(1.0, statistics.median(ratios or [1.0]))
     return [(name, took) for name, took in seconds.items() if took > limit and not table.get(name, {}).get("guards")]
 
 
@@ -52,20 +53,20 @@ def self_test():
 <testcase name="A.Quick" time="0.04" status="run"/>
 <testcase name="B.Slow  # GetParam() = 3" time="12.34" status="run"/>
 <testcase name="C.Left" time="99" status="disabled"/>
-<testcase name="D.New" time="5.5" status="run"/></testsuite>"""
+<testcase name="D.New" time="6.6" status="run"/></testsuite>"""
     seconds = seconds_of(junit)
-    assert seconds == {"A.Quick": 0.04, "B.Slow": 12.34, "D.New": 5.5}, seconds
+    assert seconds == {"A.Quick": 0.04, "B.Slow": 12.34, "D.New": 6.6}, seconds
     table = "machine,test,seconds,guards\nm,B.Slow,{},a law\n"
-    assert without_row(seconds, table_of(table.format("12"))) == [("D.New", 5.5)]
+    assert without_row(seconds, table_of(table.format("12"))) == [("D.New", 6.6)]
     assert without_row(seconds, table_of(table.format("6"))) == []  # a machine half as fast
-    assert without_row(seconds, table_of(table.format("12").replace("a law", ""))) == [("B.Slow", 12.34), ("D.New", 5.5)]
+    assert without_row(seconds, table_of(table.format("12").replace("a law", ""))) == [("B.Slow", 12.34), ("D.New", 6.6)]
 
     class Lines(list):
         write = list.append
 
     lines = Lines()
     new_table(seconds, table_of(table.format("6")), "n", lines)
-    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,12.3,a law\n", "n,D.New,5.5,\n"], lines
+    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,12.3,a law\n", "n,D.New,6.6,\n"], lines
 
 
 def main():

@@ -53,20 +53,20 @@ def self_test():
 <testcase name="A.Quick" time="0.04" status="run"/>
 <testcase name="B.Slow  # GetParam() = 3" time="12.34" status="run"/>
 <testcase name="C.Left" time="99" status="disabled"/>
-<testcase name="D.New" time="6.6" status="run"/></testsuite>"""
+<testcase name="D.New" time="7.7" status="run"/></testsuite>"""
     seconds = seconds_of(junit)
-    assert seconds == {"A.Quick": 0.04, "B.Slow": 12.34, "D.New": 6.6}, seconds
+    assert seconds == {"A.Quick": 0.04, "B.Slow": 12.34, "D.New": 7.7}, seconds
     table = "machine,test,seconds,guards\nm,B.Slow,{},a law\n"
-    assert without_row(seconds, table_of(table.format("12"))) == [("D.New", 6.6)]
+    assert without_row(seconds, table_of(table.format("12"))) == [("D.New", 7.7)]
     assert without_row(seconds, table_of(table.format("6"))) == []  # a machine half as fast
-    assert without_row(seconds, table_of(table.format("12").replace("a law", ""))) == [("B.Slow", 12.34), ("D.New", 6.6)]
+    assert without_row(seconds, table_of(table.format("12").replace("a law", ""))) == [("B.Slow", 12.34), ("D.New", 7.7)]
 
     class Lines(list):
         write = list.append
 
     lines = Lines()
     new_table(seconds, table_of(table.format("6")), "n", lines)
-    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,12.3,a law\n", "n,D.New,6.6,\n"], lines
+    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,12.3,a law\n", "n,D.New,7.7,\n"], lines
 
 
 def main():

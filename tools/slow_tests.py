@@ -6,7 +6,7 @@
     tools/slow_tests.py build/release/tests.xml --check                            fails if a test above 5 s has no row
 
 Columns: machine, test, seconds, guards. A new table keeps what docs/bench/tests.csv says that a test guards.
---check prints the seconds of all tests. Its limit is 1.3 times higher for noise, and higher on a slower machine than that of
+--check prints the seconds of all tests. Its limit is 2.5 times higher for noise, and higher on a slower machine than that of
 the table: by the median of the tests' ratios. --self-test checks this program.
 """
 
@@ -19,7 +19,7 @@ import xml.etree.ElementTree as xml
 
 TABLE = pathlib.Path(__file__).resolve().parent.parent / "docs/bench/tests.csv"
 WRITTEN_S, LIMIT_S = 4, 5
-NOISE = 1.3  # two tests run beside each other
+NOISE = 2.5  # of wall time, while another test may take both cores
 
 
 def seconds_of(junit):
@@ -51,22 +51,22 @@ def without_row(seconds, table):
 def self_test():
     junit = """<testsuite>
 <testcase name="A.Quick" time="0.04" status="run"/>
-<testcase name="B.Slow  # GetParam() = 3" time="12.34" status="run"/>
+<testcase name="B.Slow  # GetParam() = 3" time="24.68" status="run"/>
 <testcase name="C.Left" time="99" status="disabled"/>
-<testcase name="D.New" time="7.7" status="run"/></testsuite>"""
+<testcase name="D.New" time="13.7" status="run"/></testsuite>"""
     seconds = seconds_of(junit)
-    assert seconds == {"A.Quick": 0.04, "B.Slow": 12.34, "D.New": 7.7}, seconds
+    assert seconds == {"A.Quick": 0.04, "B.Slow": 24.68, "D.New": 13.7}, seconds
     table = "machine,test,seconds,guards\nm,B.Slow,{},a law\n"
-    assert without_row(seconds, table_of(table.format("12"))) == [("D.New", 7.7)]
-    assert without_row(seconds, table_of(table.format("6"))) == []  # a machine half as fast
-    assert without_row(seconds, table_of(table.format("12").replace("a law", ""))) == [("B.Slow", 12.34), ("D.New", 7.7)]
+    assert without_row(seconds, table_of(table.format("24"))) == [("D.New", 13.7)]
+    assert without_row(seconds, table_of(table.format("12"))) == []  # a machine half as fast
+    assert without_row(seconds, table_of(table.format("24").replace("a law", ""))) == [("B.Slow", 24.68), ("D.New", 13.7)]
 
     class Lines(list):
         write = list.append
 
     lines = Lines()
-    new_table(seconds, table_of(table.format("6")), "n", lines)
-    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,12.3,a law\n", "n,D.New,7.7,\n"], lines
+    new_table(seconds, table_of(table.format("12")), "n", lines)
+    assert lines == ["machine,test,seconds,guards\n", "n,B.Slow,24.7,a law\n", "n,D.New,13.7,\n"], lines
 
 
 def main():

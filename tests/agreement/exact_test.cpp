@@ -1,5 +1,5 @@
-// Every solver of the pipeline's table against exact solutions: `make test` asks for one of each law, `make
-// test-all` for all.
+// Every solver of the pipeline's table against exact solutions: `make test` asks for one of each
+// law, `make test-all` for all.
 #include <gtest/gtest.h>
 
 #include <algorithm>

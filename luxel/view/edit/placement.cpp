@@ -5,7 +5,7 @@
 namespace luxel::view {
 namespace {
 
-constexpr float kRadians = kPi / 180;
+constexpr float kRadPerDegree = kPi / 180;
 
 /// The map without its translation.
 Mat34 linear_part(Mat34 m) {
@@ -30,9 +30,9 @@ Mat34 about(Vec3 place, const Mat34& linear) {
 
 Mat34 rotation(Vec3 angles_deg) {
   const Vec3 o{};
-  return turned_about(o, {0, 1, 0}, angles_deg.y * kRadians) *
-         turned_about(o, {1, 0, 0}, angles_deg.x * kRadians) *
-         turned_about(o, {0, 0, 1}, angles_deg.z * kRadians);
+  return turned_about(o, {0, 1, 0}, angles_deg.y * kRadPerDegree) *
+         turned_about(o, {1, 0, 0}, angles_deg.x * kRadPerDegree) *
+         turned_about(o, {0, 0, 1}, angles_deg.z * kRadPerDegree);
 }
 
 /// Ry Rx Rz has the second row (cos x sin z, cos x cos z, -sin x) and the third column
@@ -41,10 +41,10 @@ Vec3 angles_of(const Mat34& turn) {
   const float sine = std::clamp(0 - turn.row[1][2], -1.0f, 1.0f);
   constexpr float kUpright = 0.9999999f;
   if (std::abs(sine) > kUpright)  // turned by y or by z is the same
-    return Vec3{std::asin(sine), std::atan2(0 - turn.row[2][0], turn.row[0][0]), 0} / kRadians;
+    return Vec3{std::asin(sine), std::atan2(0 - turn.row[2][0], turn.row[0][0]), 0} / kRadPerDegree;
   return Vec3{std::asin(sine), std::atan2(turn.row[0][2], turn.row[2][2]),
               std::atan2(turn.row[1][0], turn.row[1][1])} /
-         kRadians;
+         kRadPerDegree;
 }
 
 }  // namespace

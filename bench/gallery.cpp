@@ -1,4 +1,5 @@
-// docs/guide/gallery.md: default bakes beside path-traced pictures.
+// docs/guide/gallery.md: pictures of default bakes at eye level, then the numbers, then path-traced
+// pictures beside them.
 #include "bench/gallery.h"
 
 #include <fmt/format.h>
@@ -11,58 +12,41 @@
 
 #include "bench/baked_picture.h"
 #include "bench/bench.h"
+#include "bench/gallery_scenes.h"
 #include "bench/timing.h"
 #include "luxel/base/parallel.h"
+#include "luxel/pipeline/render/exposure.h"
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/place_camera.h"
 
 namespace luxel::bench {
 namespace {
 
-constexpr int kPictureHeight = 240;
+constexpr display::DrawParams kPicture{.width = 960, .height = 540};
+/// The pictures that are compared: small, so that many paths fall into each pixel.
+constexpr display::DrawParams kCompared{.width = 320, .height = 180};
 /// Two independent pictures get so many paths per pixel at a time, until FLIP between both, which
 /// is noise of the paths, is no more than kNoise, or they have kMostPaths each.
-constexpr int kPathsAtOnce = 192, kMostPaths = 2 * kPathsAtOnce;
-constexpr double kNoise = 0.05;
+constexpr int kPathsAtOnce = 256, kMostPaths = 8 * kPathsAtOnce;
+constexpr double kNoise = 0.015;
 /// Pixels between the two pictures.
 constexpr int kGap = 4;
 
-struct GalleryScene {
-  std::string_view file;    ///< in shared/scenes
-  std::string_view credit;  ///< what it is, whose, and its licence
-};
-constexpr std::array kGallery{
-    GalleryScene{"cornell_box/cornell_box.glb", "The Cornell box. By this project, CC0."},
-    GalleryScene{"living_room/living_room.glb",
-                 "A living room that opens on a walled garden. By Godot Engine contributors, MIT."},
-    GalleryScene{"living_room/living_room_lit_uv1.glb",
-                 "The living room with a sun in the file and a lightmap layout of its own. By "
-                 "Godot Engine contributors, MIT."},
-    GalleryScene{"suzanne_room/room.glb",
-                 "A room with two doorways and smooth objects. By Godot Engine contributors, MIT."},
-    GalleryScene{"tile_game_room/tile_game_room6.glb",
-                 "A room of a tile game. By Poimandres (react-three-lightmap), MIT."},
-    GalleryScene{"tile_game_room/tile_game_room_lit_uv1.glb",
-                 "The tile room with a lamp and a lightmap layout of its own. By Poimandres "
-                 "(react-three-lightmap), MIT."},
-    GalleryScene{"zdm2/zdm2.glb",
-                 "zdm2, a level of Sauerbraten. By Chaseter, Suicizer, I.g( and friends (Godot "
-                 "Engine demo projects), CC BY 4.0."},
-    GalleryScene{"pandora/pandora.obj",
-                 "pandora, a level of Sauerbraten (quadropolis.us/node/4125), CC BY. Its textures "
-                 "are missing; colours stand for them."},
-    GalleryScene{"kaykit_city/kaykit_city.glb",
-                 "Streets of KayKit City Builder Bits. By Kay Lousberg, CC0."},
-    GalleryScene{"japanese_bridge_garden/japanese_bridge_garden.glb",
-                 "\"Japanese Bridge Garden\" by kristenlee, CC BY 4.0, turned to "
-                 "metallic-roughness materials."},
-    GalleryScene{"spot_teapot_bunny/spot.obj", "Spot. By Keenan Crane, public domain."},
-    GalleryScene{"spot_teapot_bunny/teapot.obj", "The teapot. By Martin Newell."},
-    GalleryScene{"spot_teapot_bunny/stanford-bunny.obj",
-                 "The bunny. By the Stanford Computer Graphics Laboratory."}};
-
 std::string stem_of(const GalleryScene& scene) {
   return std::filesystem::path(scene.file).stem().string();
+}
+
+/// Names of pictures, after "gallery-".
+std::string picture_of(const std::string& scene, size_t view) {
+  return scene + (view == 0 ? "" : fmt::format("-{}", view + 1)) + ".jpg";
+}
+std::string pair_of(const std::string& scene) { return scene + "-paths.png"; }
+
+scene::Camera camera_of(const GalleryView& view) {
+  scene::Scene scene;
+  scene::place_camera(scene, "", view.eye, view.look_at, view.fov_y_deg * kPi / 180);
+  return scene.cameras[0];
 }
 
 image::Image8 side_by_side(const image::Image& left, const image::Image& right) {
@@ -75,13 +59,11 @@ image::Image8 side_by_side(const image::Image& left, const image::Image& right) 
   return image::to_srgb8(both);
 }
 
-/// One scene's bake and path-traced picture, as on a screen.
-struct Pair {
-  image::Image bake, paths;
-  double flip = 0, flip_of_paths = 0;
-  double bake_seconds = 0, path_seconds = 0;  ///< of processors
-  int pages = 0, width = 0, height = 0;       ///< of the lightmap
-  int paths_per_pixel = 0;
+/// A scene's row of gallery.csv. Seconds are those of processors.
+struct Row {
+  std::string scene;
+  int pages = 0, width = 0, height = 0, paths = 0;  ///< paths per pixel
+  double bake_seconds = 0, path_seconds = 0, flip = 0, flip_of_paths = 0;
 };
 
 Result<pipeline::Bake> bake_by_default(const std::filesystem::path& file, Progress& progress) {
@@ -93,7 +75,7 @@ Result<pipeline::Bake> bake_by_default(const std::filesystem::path& file, Progre
   return pipeline::bake_scene(settings, progress);
 }
 
-/// Two pictures of the bake's view, by independent paths.
+/// Two pictures of a view, by independent paths.
 struct PathPictures {
   std::array<image::Image, 2> picture;
   int paths = 0;     ///< per pixel, of each
@@ -109,69 +91,69 @@ image::Image mean_of(const image::Image& a, float n, const image::Image& b) {
   return out;
 }
 
-Result<PathPictures> trace_pictures(const pipeline::Bake& bake, const trace::RayTracer& tracer,
-                                    const display::DrawParams& size, Progress& progress) {
+Result<PathPictures> trace_pictures(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                    const scene::Camera& camera, float exposure,
+                                    Progress& progress) {
   PathPictures out;
   for (uint64_t round = 0; out.paths == 0 || (out.noise > kNoise && out.paths < kMostPaths);
        ++round) {
     for (size_t k = 0; k < 2; ++k) {
       const reference::PathParams params{.samples = kPathsAtOnce, .seed = 1 + k + 2 * round};
       LUXEL_TRY(const reference::Picture more,
-                reference::radiance_by_paths(bake.scene, tracer, bake.view.camera, size.width,
-                                             size.height, params, progress));
+                reference::radiance_by_paths(scene, tracer, camera, kCompared.width,
+                                             kCompared.height, params, progress));
       out.picture[k] = mean_of(out.picture[k], float(round), more.radiance);
     }
     out.paths += kPathsAtOnce;
-    out.noise = mean_flip(on_screen(out.picture[0], bake.view.exposure),
-                          on_screen(out.picture[1], bake.view.exposure));
+    out.noise = mean_flip(on_screen(out.picture[0], exposure), on_screen(out.picture[1], exposure));
   }
   return out;
 }
 
-Result<Pair> make_pair(const std::filesystem::path& file, Progress& progress) {
-  Pair out;
+/// What the page shows of a scene: pictures of its views, and the first view beside paths.
+struct Shown {
+  Row row;
+  std::vector<PageFile> files;
+};
+
+Result<Shown> show_scene(const GalleryScene& scene, const std::filesystem::path& file,
+                         Progress& progress) {
+  Shown out;
+  Row& row = out.row;
+  row.scene = stem_of(scene);
   const std::clock_t start = std::clock();
   LUXEL_TRY(const pipeline::Bake bake, bake_by_default(file, progress));
-  out.bake_seconds = processor_seconds_since(start);
-  out.pages = int(bake.lightmaps.size());
-  out.width = bake.lightmaps[0].width, out.height = bake.lightmaps[0].height;
+  row.bake_seconds = processor_seconds_since(start);
+  row.pages = int(bake.lightmaps.size());
+  row.width = bake.lightmaps[0].width, row.height = bake.lightmaps[0].height;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
-  display::DrawParams size;
-  size.height = kPictureHeight, size.width = kPictureHeight * bake.view.width / bake.view.height;
-  LUXEL_TRY(const image::Image drawn,
-            draw_baked(bake, tracer, bake.light.irradiance, size, progress));
+  const auto draw = [&](const scene::Camera& camera, const display::DrawParams& size) {
+    return draw_baked(bake, tracer, camera, bake.light.irradiance, size, progress);
+  };
+
+  // 1. The views, each with the exposure that luxel render gives it.
+  for (size_t k = 0; k < scene.views.size() && scene.views[k].fov_y_deg > 0; ++k) {
+    LUXEL_TRY(const image::Image drawn, draw(camera_of(scene.views[k]), kPicture));
+    const image::Image seen = on_screen(drawn, pipeline::exposure_factor({}, drawn));
+    out.files.push_back({picture_of(row.scene, k), jpeg_of(image::to_srgb8(seen))});
+  }
+
+  // 2. The first view by paths, as bright as that of the bake.
+  const scene::Camera camera = camera_of(scene.views[0]);
+  LUXEL_TRY(const image::Image drawn, draw(camera, kCompared));
+  const float exposure = pipeline::exposure_factor({}, drawn);
   const std::clock_t begin = std::clock();
-  LUXEL_TRY(const PathPictures traced, trace_pictures(bake, tracer, size, progress));
-  out.path_seconds = processor_seconds_since(begin);
-  const float exposure = bake.view.exposure;
-  out.bake = on_screen(drawn, exposure);
-  out.paths = on_screen(mean_of(traced.picture[0], 1, traced.picture[1]), exposure);
-  out.flip = mean_flip(out.bake, out.paths);
-  out.flip_of_paths = traced.noise, out.paths_per_pixel = 2 * traced.paths;
+  LUXEL_TRY(const PathPictures traced,
+            trace_pictures(bake.scene, tracer, camera, exposure, progress));
+  row.path_seconds = processor_seconds_since(begin);
+  const image::Image baked = on_screen(drawn, exposure);
+  const image::Image paths = on_screen(mean_of(traced.picture[0], 1, traced.picture[1]), exposure);
+  row.flip = mean_flip(baked, paths), row.flip_of_paths = traced.noise;
+  row.paths = 2 * traced.paths;
+  out.files.push_back(png_file(pair_of(row.scene), side_by_side(baked, paths)));
   return out;
 }
 
-std::string heading() {
-  return fmt::format(
-      "# Gallery\n\n"
-      "These scenes were baked by `luxel bake SCENE -o OUT`, without any other option. Left: the "
-      "bake, drawn from its lightmap as preview.png is. Right: the same view by path tracing, "
-      "with the same exposure. `luxel bench gallery` wrote this page.\n\n"
-      "The scenes are not luxel's, and not part of it. A scene without light gets the daylight "
-      "that luxel gives by default.\n\n"
-      "FLIP is the difference that a person sees who flips between both pictures, from 0 to 1 "
-      "([compare.md](../method/compare.md)). *Noise of the paths*: FLIP between two pictures of "
-      "half as many paths, whose mean is the one on the right. *Seconds* are those of processors, "
-      "on an {}.\n\n",
-      machine_name());
-}
-
-/// A scene's row of gallery.csv.
-struct Row {
-  std::string scene;
-  int pages = 0, width = 0, height = 0, paths = 0;  ///< paths per pixel
-  double bake_seconds = 0, path_seconds = 0, flip = 0, flip_of_paths = 0;
-};
 constexpr std::string_view kColumns =
     "scene,pages,width,height,paths,bake_cpu_s,path_cpu_s,flip,flip_of_paths";
 
@@ -210,28 +192,42 @@ void replace(const Row& row, std::vector<Row>& rows) {
 
 /// The page of the rows, in the order of kGallery.
 std::string page_of(std::span<const Row> rows) {
-  std::vector<std::vector<std::string>> cells;
-  std::string pictures;
+  std::vector<std::vector<std::string>> bakes, paths;
+  std::string pictures, pairs;
   for (const GalleryScene& scene : kGallery) {
     const std::string name = stem_of(scene);
     const auto r = std::ranges::find(rows, name, &Row::scene);
     if (r == rows.end()) continue;
     const std::string size = fmt::format("{} x {}", r->width, r->height);
-    cells.push_back({fmt::format("[{}](#{})", name, name),
-                     r->pages == 1 ? size : fmt::format("{} pages of {}", r->pages, size),
-                     fmt::format("{:.0f}", r->bake_seconds), fmt::format("{}", r->paths),
-                     fmt::format("{:.0f}", r->path_seconds), fmt::format("{:.3f}", r->flip),
-                     fmt::format("{:.3f}", r->flip_of_paths)});
-    pictures +=
-        fmt::format("## {}\n\n{}\n\n![{}: baked, path traced](../images/gallery-{}.png)\n\n", name,
-                    scene.credit, name, name);
+    bakes.push_back({name, r->pages == 1 ? size : fmt::format("{} pages of {}", r->pages, size),
+                     fmt::format("{:.0f}", r->bake_seconds)});
+    paths.push_back({name, fmt::format("{}", r->paths), fmt::format("{:.0f}", r->path_seconds),
+                     fmt::format("{:.3f}", r->flip), fmt::format("{:.3f}", r->flip_of_paths)});
+    pictures += fmt::format("## {}\n\n{}\n\n", name, scene.credit);
+    for (size_t k = 0; k < scene.views.size() && scene.views[k].fov_y_deg > 0; ++k)
+      pictures += fmt::format("![{}](../images/gallery-{})\n\n", name, picture_of(name, k));
+    pairs +=
+        fmt::format("![{}: baked, path traced](../images/gallery-{})\n\n", name, pair_of(name));
   }
-  std::string page =
-      wrapped(heading() +
-              markdown_table({"scene", "lightmap", "seconds of the bake", "paths per pixel",
-                              "seconds of the paths", "FLIP", "noise of the paths"},
-                             cells) +
-              "\n" + pictures);
+  std::string page = fmt::format(
+      "# Gallery\n\n"
+      "`luxel bake SCENE -o OUT` baked these scenes, without any other option. The pictures show "
+      "them lit by their lightmaps alone. A scene without light gets the daylight that luxel adds "
+      "by default. The scenes are not part of luxel. `luxel bench gallery` wrote this page.\n\n"
+      "{}"
+      "## The bakes in numbers\n\n"
+      "*Seconds* are processor seconds of the whole bake, on an {}.\n\n{}\n"
+      "## Beside path tracing\n\n"
+      "Left: the bake. Right: the same view by path tracing, with the same exposure. FLIP is the "
+      "difference that a person sees who flips between both pictures, from 0 to 1 "
+      "([compare.md](../method/compare.md)). *Noise of the paths* is FLIP between two pictures of "
+      "half as many paths; the picture on the right is their mean.\n\n{}\n{}",
+      pictures, machine_name(), markdown_table({"scene", "lightmap", "seconds of the bake"}, bakes),
+      markdown_table(
+          {"scene", "paths per pixel", "seconds of the paths", "FLIP", "noise of the paths"},
+          paths),
+      pairs);
+  page = wrapped(page);
   while (page.ends_with("\n\n")) page.pop_back();
   return page;
 }
@@ -261,11 +257,9 @@ Result<Page> make_gallery(const std::filesystem::path& shared, std::string_view 
     const std::string name = stem_of(scene);
     const auto file = shared / "scenes" / scene.file;
     if ((!only.empty() && only != name) || !std::filesystem::exists(file)) continue;
-    LUXEL_TRY(const Pair pair, make_pair(file, progress));
-    replace({name, pair.pages, pair.width, pair.height, pair.paths_per_pixel, pair.bake_seconds,
-             pair.path_seconds, pair.flip, pair.flip_of_paths},
-            rows);
-    page.files.push_back(png_file(name + ".png", side_by_side(pair.bake, pair.paths)));
+    LUXEL_TRY(Shown shown, show_scene(scene, file, progress));
+    replace(shown.row, rows);
+    std::ranges::move(shown.files, std::back_inserter(page.files));
   }
   if (page.files.empty())
     return fail(ErrorCode::bad_setting, "no scene of the gallery{} lies in {}",

@@ -124,8 +124,8 @@ Result<std::unique_ptr<QualityCase>> quality_case(pipeline::Bake laid_out, int t
   settings.seed = kQualityTruthSeed;
   LUXEL_TRY(const pipeline::TexelLight truth,
             pipeline::find_solver("gather")->solve(c->input(), settings, {}, {}, progress));
-  LUXEL_TRY(const image::Image radiance,
-            draw_baked(c->bake, *c->tracer, truth.irradiance, picture_size(), progress));
+  LUXEL_TRY(const image::Image radiance, draw_baked(c->bake, *c->tracer, c->bake.view.camera,
+                                                    truth.irradiance, picture_size(), progress));
   c->exposure = display::readable_exposure(radiance);
   c->reference = on_screen(radiance, c->exposure);
   return c;
@@ -152,8 +152,8 @@ Result<std::array<QualityFigures, 2>> measure_run(const QualityCase& c, const Qu
       seconds += processor_seconds_since(start);
     }
     if (!is_shown(run, denoised)) continue;
-    LUXEL_TRY(const image::Image radiance,
-              draw_baked(c.bake, *c.tracer, light.irradiance, picture_size(), progress));
+    LUXEL_TRY(const image::Image radiance, draw_baked(c.bake, *c.tracer, c.bake.view.camera,
+                                                      light.irradiance, picture_size(), progress));
     out[size_t(denoised)] = {seconds, mean_flip(on_screen(radiance, c.exposure), c.reference),
                              indirect, direct};
   }

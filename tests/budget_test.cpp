@@ -162,7 +162,8 @@ TEST(TimeBudget, EndsSolversThatCannotEndEarlier) {
     EXPECT_FALSE(std::filesystem::exists(s.path / "out"));
   }
   const ScratchFolder s;
-  const CommandResult r = luxel(box(s, "--time-budget 3600 --solver matrix"));
+  const CommandResult r =
+      luxel(box(s, "--time-budget 3600 --solver matrix --patches 300 --rays 64"));
   EXPECT_EQ(r.code, 0) << r.err;
 }
 

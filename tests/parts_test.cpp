@@ -91,12 +91,12 @@ TEST_F(BakesInParts, MayBeOneOrRunTogether) {
 
 // A part that is killed goes on where it stood; what no part has, merge does itself.
 TEST_F(BakesInParts, LoseNothingButWhatWasUnderWay) {
-  const std::string more = scene_file("cornell-box.glb") + " --resolution 128 --samples 1024";
+  const std::string more = scene_file("cornell-box.glb") + " --resolution 128 --samples 256";
   const fs::path file = folder_ / "part-1-of-2.luxel";
   {
     Running command(part(1, 2, more));
     std::error_code none;
-    while (!command.ended() && !(fs::file_size(file, none) > 2'000'000 && !none))
+    while (!command.ended() && !(fs::file_size(file, none) > 500'000 && !none))
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     ASSERT_TRUE(command.end_with(SIGKILL));
   }

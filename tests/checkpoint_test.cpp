@@ -81,12 +81,12 @@ using CheckpointSlow = Checkpoint;
 
 // At any moment, from the start of the process to after its end: each time the bake is killed again
 // and again until one comes through.
-TEST_F(CheckpointSlow, KilledAtTwentyRandomMomentsEndsWithTheSameBits) {
+void kill_at_random_moments(const fs::path& scratch, int most_kills) {
   const std::string expected = undisturbed();
   RandomStream random{7};
   int kills = 0, found = 0;
-  for (int run = 0; kills < 20; ++run) {
-    const fs::path folder = scratch_.path / std::to_string(run);
+  for (int run = 0; kills < most_kills; ++run) {
+    const fs::path folder = scratch / std::to_string(run);
     for (double longest_s = 1.5;; longest_s *= 1.2) {
       const double moment = longest_s * double(random.next());
       const std::string resume = fs::exists(folder / "checkpoint.luxel") ? " --resume" : "";
@@ -101,6 +101,13 @@ TEST_F(CheckpointSlow, KilledAtTwentyRandomMomentsEndsWithTheSameBits) {
     EXPECT_FALSE(fs::exists(folder / "checkpoint.luxel"));
   }
   EXPECT_GT(found, 0) << "no bake went on with anything: the moments are badly chosen";
+}
+
+TEST_F(CheckpointSlow, KilledAtRandomMomentsEndsWithTheSameBits) {
+  kill_at_random_moments(scratch_.path, 8);
+}
+TEST_F(CheckpointSlow, KilledAtTwentyRandomMomentsEndsWithTheSameBits) {
+  kill_at_random_moments(scratch_.path, 20);
 }
 
 // Threads, tiles and kills: one lightmap.
@@ -253,6 +260,7 @@ TEST_F(Checkpoint, WithoutRoomOnTheDiskIsGivenUp) {
 }
 
 TEST_F(Checkpoint, TwoBakesInOneFolderAreRefused) {
+  const std::string brief = " --resolution 32 --samples 4 --direct-samples 4";
   {
     Running first(bake(folder_, kKeep + " --resolution 1024"));
     // It holds the folder before it keeps anything.
@@ -262,11 +270,11 @@ TEST_F(Checkpoint, TwoBakesInOneFolderAreRefused) {
     EXPECT_EQ(second.code, 1);
     EXPECT_THAT(second.err, HasSubstr("another bake is using " + folder_.string()));
     EXPECT_TRUE(fs::exists(folder_)) << "it belongs to the first";
-    const CommandResult beside = luxel(bake(scratch_.path / "beside"));
+    const CommandResult beside = luxel(bake(scratch_.path / "beside", brief));
     EXPECT_EQ(beside.code, 0) << beside.err;
     first.end_with(SIGKILL);
   }
-  const CommandResult after = luxel(bake(folder_));
+  const CommandResult after = luxel(bake(folder_, brief));
   EXPECT_EQ(after.code, 0) << "the lock goes with its process: " << after.err;
 }
 

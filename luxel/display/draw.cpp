@@ -1,5 +1,8 @@
 #include "luxel/display/draw.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "luxel/base/check.h"
@@ -10,30 +13,53 @@
 namespace luxel::display {
 namespace {
 
-constexpr int kTile = 16;  ///< pixels along a tile's side: its rays fit in a core's cache
+constexpr size_t kAtOnce = 256;  ///< pixels whose rays fit in a core's cache
+/// A step between neighbours that can be seen, as a share of the brighter one: four of 255 in
+/// bright places.
+constexpr float kSeenStep = 1.0f / 32;
 
-struct PixelTile {
-  int x0, y0, x1, y1;
-};
-
-PixelTile tile_of(size_t number, const DrawParams& params) {
-  const int across = (params.width + kTile - 1) / kTile;
-  const int x0 = int(number) % across * kTile, y0 = int(number) / across * kTile;
-  return {x0, y0, std::min(x0 + kTile, params.width), std::min(y0 + kTile, params.height)};
+/// The rays of pixels, n x n to each at the centres of a regular grid.
+std::vector<trace::Ray> rays_of(const trace::CameraRays& camera, std::span<const uint32_t> pixels,
+                                int n) {
+  std::vector<trace::Ray> rays;
+  rays.reserve(pixels.size() * size_t(n * n));
+  for (const uint32_t pixel : pixels) {
+    const uint32_t width = uint32_t(camera.width);
+    for (int s = 0; s < n * n; ++s)
+      rays.push_back(camera.through(float(pixel % width) + (float(s % n) + 0.5f) / float(n),
+                                    float(pixel / width) + (float(s / n) + 0.5f) / float(n)));
+  }
+  return rays;
 }
 
-/// The rays of a tile, pixel after pixel, n x n to each at the centres of a regular grid.
-std::vector<trace::Ray> tile_rays(const trace::CameraRays& camera, const PixelTile& tile, int n) {
-  std::vector<trace::Ray> rays;
-  rays.reserve(size_t((tile.x1 - tile.x0) * (tile.y1 - tile.y0) * n * n));
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1; ++x)
-      for (int s = 0; s < n * n; ++s) {
-        const float px = float(x) + (float(s % n) + 0.5f) / float(n);
-        const float py = float(y) + (float(s / n) + 0.5f) / float(n);
-        rays.push_back(camera.through(px, py));
-      }
-  return rays;
+/// Whether a step from one pixel to the other can be seen.
+bool differ(const float* a, const float* b) {
+  float most = 0, difference = 0;
+  for (int c = 0; c < 3; ++c) {
+    most = std::max({most, a[c], b[c]});
+    difference = std::max(difference, std::abs(a[c] - b[c]));
+  }
+  return difference > kSeenStep * most || a[3] != b[3];
+}
+
+/// The neighbours of pixels that differ from them and were not taken before.
+std::vector<uint32_t> take_differing(const image::Image& picture, std::span<const uint32_t> pixels,
+                                     std::vector<bool>& taken) {
+  std::vector<uint32_t> out;
+  const float* data = picture.data.data();
+  const uint32_t width = uint32_t(picture.width);
+  const auto look = [&](uint32_t from, uint32_t to) {
+    if (taken[to] || !differ(data + 4 * size_t(from), data + 4 * size_t(to))) return;
+    taken[to] = true;
+    out.push_back(to);
+  };
+  for (const uint32_t i : pixels) {
+    if (i % width > 0) look(i, i - 1);
+    if (i % width + 1 < width) look(i, i + 1);
+    if (i >= width) look(i, i - width);
+    if (i + width < taken.size()) look(i, i + width);
+  }
+  return out;
 }
 
 /// What is seen in a direction in which there is no surface.
@@ -69,29 +95,38 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
                                const scene::Camera& camera, const SeenAt& seen_at,
                                const DrawParams& params, Progress& progress) {
   LUXEL_CHECK(params.width > 0 && params.height > 0 && params.samples_per_axis > 0);
-  const trace::CameraRays rays_of(camera, params.width, params.height);
-  const size_t tiles =
-      size_t((params.width + kTile - 1) / kTile) * size_t((params.height + kTile - 1) / kTile);
+  const trace::CameraRays through(camera, params.width, params.height);
   const Behind behind = [&](Vec3 direction) {
     const float most = params.brightest_behind;
     return min(scene::smooth_surroundings_towards(scene, direction), Rgb{most, most, most});
   };
   image::Image picture(params.width, params.height, 4);
-  progress.begin("draw", tiles);
-  parallel_for(tiles, 1, [&](size_t begin, size_t end) {
-    for (size_t number = begin; number < end && !progress.cancelled(); ++number) {
-      const PixelTile tile = tile_of(number, params);
-      std::vector<trace::Ray> rays = tile_rays(rays_of, tile, params.samples_per_axis);
+  std::vector<uint32_t> pixels(size_t(params.width) * size_t(params.height));
+  std::iota(pixels.begin(), pixels.end(), 0);
+  const auto draw_pixels = [&](int per_axis) {
+    const size_t per_pixel = size_t(per_axis * per_axis);
+    parallel_for(pixels.size(), kAtOnce, [&](size_t begin, size_t end) {
+      if (progress.cancelled()) return;
+      const std::span some = std::span(pixels).subspan(begin, end - begin);
+      std::vector<trace::Ray> rays = rays_of(through, some, per_axis);
       const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
-      const size_t per_pixel = size_t(params.samples_per_axis * params.samples_per_axis);
-      size_t first = 0;
-      for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x, first += per_pixel)
-          write_pixel(std::span(hits).subspan(first, per_pixel),
-                      std::span(rays).subspan(first, per_pixel), seen_at, behind, picture.at(x, y));
-      progress.advance(1);
-    }
-  });
+      for (size_t i = 0; i < some.size(); ++i)
+        write_pixel(std::span(hits).subspan(i * per_pixel, per_pixel),
+                    std::span(rays).subspan(i * per_pixel, per_pixel), seen_at, behind,
+                    picture.data.data() + 4 * size_t(some[i]));
+      progress.advance(some.size());
+    });
+  };
+  const int n = params.samples_per_axis;
+  progress.begin("draw", n > 1 ? 2 * pixels.size() : pixels.size());
+  draw_pixels(1);
+  // A pixel that has all its rays may differ from a neighbour that seemed to be like it: what is
+  // thinner than a pixel is followed from where one ray met it.
+  std::vector<bool> taken(pixels.size());
+  while (n > 1 && !pixels.empty() && !progress.cancelled()) {
+    pixels = take_differing(picture, pixels, taken);
+    draw_pixels(n);
+  }
   progress.finish();
   LUXEL_TRY_STATUS(stopped(progress));
   return picture;

@@ -15,7 +15,7 @@ namespace luxel::display {
 /// The size of a picture [pixels], and its rays.
 struct DrawParams {
   int width = 960, height = 720;
-  int samples_per_axis = 3;           ///< n x n rays per pixel
+  int samples_per_axis = 3;           ///< n x n rays per pixel that differs from a neighbour
   float brightest_behind = INFINITY;  ///< what is seen of the surroundings is cut off there
 };
 

@@ -135,6 +135,28 @@ TEST(Draw, PerspectiveAndOrthographicEdgesLieWhereGeometrySaysSo) {
   EXPECT_EQ(covered(camera, 60, 60), 40 * 40);
 }
 
+TEST(Draw, ARodThinnerThanAPixelIsSeenAlongItsWholeLength) {
+  // It is 1/3 pixel wide, 80 pixels long and rises by one pixel in 16: rays through the middles of
+  // pixels meet it in five columns of 16. It differs in colour from a wall, or in A alone from
+  // black surroundings.
+  for (const bool before_wall : {true, false}) {
+    scene::Scene scene;
+    const Vec3 along = {40, 2.5f, 0};
+    const Vec3 aside = normalize(Vec3{-along.y, along.x, 0}) * (1.0f / 6);
+    add_square(scene, {}, along, aside, gray(before_wall ? 0.5f : 0));
+    if (before_wall) add_square(scene, {0, 0, -1}, {60, 0, 0}, {0, 60, 0}, gray(0.25f));
+    scene::Camera camera = camera_on_z(2);
+    camera.orthographic_height_m = 60;
+    const image::Image picture = draw_ok(scene, camera, {100, 60, 3});
+    for (int x = 11; x < 89; ++x) {
+      float seen = 0;
+      for (int y = 0; y < 60; ++y)
+        seen += before_wall ? 4 * kPi * picture.rgb(x, y).y - 1 : picture.at(x, y)[3];
+      EXPECT_NEAR(seen, 1.0f / 3, 1.0f / 9 + 1e-4f) << x;
+    }
+  }
+}
+
 TEST(Draw, TopOfThePictureIsUp) {
   scene::Scene scene;
   add_square(scene, {}, {10, 0, 0}, {0, 10, 0}, gray(0.5f));

@@ -10,7 +10,7 @@ namespace luxel::pipeline {
 namespace {
 
 /// Measured on one core of an AMD EPYC; short beside the light of all bakes that are worth a plan.
-constexpr double kDrawSeconds = 0.6, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
+constexpr double kDrawSeconds = 0.3, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
 /// Measured on the same: docs/method/denoise.md.
 constexpr double kDenoiseSecondsPerTexel = 1.3e-5;
 

@@ -159,7 +159,7 @@ TEST(SlowGather, ASphereSharesItsLightEvenly) {
   const double f = shining / area, mean_rho = 0.8 * f + 0.5 * (1 - f);
   const double expected =
       f / (1 - mean_rho);  // H of the reference: arriving light, e = 1 on the zone
-  const auto room = lay_out(std::move(scene), 256);
+  const auto room = lay_out(std::move(scene), 128);
   const Gather result = solve(*room, with_samples(256, 256));
   // 1,280 facets are not a sphere: their light arrives uniformly only up to the facets' angle
   // (about 5 degrees), some tenths of a percent.

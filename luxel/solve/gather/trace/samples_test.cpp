@@ -12,15 +12,15 @@
 namespace luxel::gather {
 namespace {
 
-// Against many samples of the same map: stratified samples must at least keep up with independent
-// ones, error ~ n^-1/2.
+// Against 32 times the samples on the same map: stratified samples must at least keep up with
+// independent ones, error ~ n^-1/2.
 TEST(SlowGather, TheErrorFallsAtLeastWithTheRootOfTheSamples) {
   const auto room = lay_out(scene::cornell_box(), 48);
-  GatherParams params = with_samples(16384, 1024);
+  GatherParams params = with_samples(8192, 1024);
   params.seed = 99;
   const Gather truth = solve(*room, params);
   std::vector<double> log_n, log_error;
-  for (const int samples : {16, 64, 256, 1024}) {
+  for (const int samples : {16, 64, 256}) {
     const Gather result = solve(*room, with_samples(samples, 1024));
     double sum2 = 0;
     for (size_t i = 0; i < truth.irradiance.size(); ++i) {
@@ -30,15 +30,15 @@ TEST(SlowGather, TheErrorFallsAtLeastWithTheRootOfTheSamples) {
     log_n.push_back(std::log(double(samples)));
     log_error.push_back(0.5 * std::log(sum2 / double(truth.irradiance.size())));
   }
-  // Least squares through the four points.
+  // Least squares through the three points.
   double mx = 0, my = 0, sxy = 0, sxx = 0;
-  for (size_t k = 0; k < 4; ++k) mx += log_n[k] / 4, my += log_error[k] / 4;
-  for (size_t k = 0; k < 4; ++k) {
+  for (size_t k = 0; k < 3; ++k) mx += log_n[k] / 3, my += log_error[k] / 3;
+  for (size_t k = 0; k < 3; ++k) {
     sxy += (log_n[k] - mx) * (log_error[k] - my);
     sxx += (log_n[k] - mx) * (log_n[k] - mx);
   }
   EXPECT_LE(sxy / sxx, -0.5) << "errors " << std::exp(log_error[0]) << " .. "
-                             << std::exp(log_error[3]);
+                             << std::exp(log_error[2]);
 }
 
 uint64_t hash_of(std::span<const Rgb> values) {

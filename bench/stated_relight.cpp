@@ -93,8 +93,9 @@ Result<matrix::RelightData> small_relight(const JudgedScene& s, matrix::CodecKin
             matrix::make_relight_data(scene, *s.scene.tracer, std::move(checked.target), params,
                                       progress));
   if (codec == matrix::CodecKind::hierarchical)
-    LUXEL_TRY_STATUS(pipeline::measure_relight_error(scene, *s.scene.tracer, checked.own, s.seed,
-                                                     data, progress));
+    LUXEL_TRY_STATUS(pipeline::measure_relight_error(scene, *s.scene.tracer, checked.own,
+                                                     params.factors.rays_per_patch, s.seed, data,
+                                                     progress));
   return data;
 }
 

@@ -232,7 +232,8 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
   CheckedTarget checked = with_places(std::move(wanted.target), places_to_check(scene, s.seed));
   LUXEL_TRY(out.data, matrix::make_relight_data(scene, tracer, std::move(checked.target), params,
                                                 progress, team));
-  LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, out.data, progress));
+  LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, params.factors.rays_per_patch,
+                                         s.seed, out.data, progress));
   if (!std::isfinite(out.data.baked_error) || !std::isfinite(out.data.lamp_error))
     return Failure{scene::overflow_at(scene, scene::world_bounds(scene).centre())};
   out.data.scene_glb = std::move(wanted.glb);

@@ -13,10 +13,10 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Errors lie in corners and at contacts: of so many places, some tens do. With these paths for
-/// each of two answers, a check takes about as long as the form factors of 500 patches.
+/// Errors lie in corners and at contacts: of so many places, some tens do.
 constexpr size_t kPlaces = 512;
-constexpr int kPaths = 256;
+/// For each of two answers. A coarse file is off by more than the noise of few paths.
+constexpr int kLeastPaths = 16, kMostPaths = 256;
 constexpr uint64_t kLamps = 4;
 
 /// Few places and few lamps have much of the error, and a sample misses some. What is found, two
@@ -31,8 +31,14 @@ struct Check {
   const trace::RayTracer& tracer;
   reference::Receivers places;
   uint64_t seed = 1;
-  int paths = kPaths;
+  int paths = kMostPaths;
 };
+
+/// So many that a check takes about as long as the form factors.
+int paths_to_check(size_t patches, int rays_per_patch) {
+  const uint64_t rays = uint64_t(patches) * uint64_t(rays_per_patch);
+  return int(std::clamp<uint64_t>(rays / (7 * kPlaces), kLeastPaths, kMostPaths));
+}
 
 /// What remains when only the punctual lights shine.
 scene::Scene punctual_of(scene::Scene scene) {
@@ -141,8 +147,8 @@ CheckedTarget with_places(matrix::Target target, const transport::Elements& plac
 }
 
 Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& tracer,
-                             size_t own_places, uint64_t seed, matrix::RelightData& data,
-                             Progress& progress) {
+                             size_t own_places, int rays_per_patch, uint64_t seed,
+                             matrix::RelightData& data, Progress& progress) {
   // What the file's player will say of the checked places.
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(data, {}));
   const matrix::Target all = data.target;
@@ -151,13 +157,14 @@ Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& 
   const reference::Receivers places{
       checked(all.position), checked(all.normal), checked(all.geometric_normal), {}};
   const uint64_t check_seed = hash64(seed, 0xc4ec);
+  const int paths = paths_to_check(data.size(), rays_per_patch);
   const auto relit = [&] { return checked(relighter.latest().indirect_at_points); };
   scene::Scene punctual = punctual_of(scene);
   // The scene's own lights.
   if (scene::has_light(scene)) {
     relighter.update({.punctual = scene.lights, .background = scene.background});
-    LUXEL_TRY(data.baked_error, error_of({scene, punctual, tracer, places, check_seed}, relit(),
-                                         data.bounces, progress));
+    LUXEL_TRY(data.baked_error, error_of({scene, punctual, tracer, places, check_seed, paths},
+                                         relit(), data.bounces, progress));
   }
   // Point lights alone.
   const std::vector<Rgb> dark(scene.materials.size());
@@ -169,7 +176,7 @@ Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& 
     if (!lamp) continue;
     punctual.lights = {*lamp};
     relighter.update({punctual.lights, dark, {}});
-    LUXEL_TRY(const double error, error_of({punctual, punctual, tracer, places, check_seed},
+    LUXEL_TRY(const double error, error_of({punctual, punctual, tracer, places, check_seed, paths},
                                            relit(), data.bounces, progress));
     data.lamp_error = std::max(data.lamp_error, error);
   }

@@ -23,11 +23,12 @@ CheckedTarget with_places(matrix::Target target, const transport::Elements& plac
 /// are bounds of the root mean square of the error of indirect light over its mean, by luminance:
 /// of the scene's own lights, and of point lights, from the largest of a few; 0 where there is no
 /// such light. Light of the path tracer, twice and independent, is the truth: with a and b, (g -
-/// a)(g - b) has the mean of the square of g's error. Errors: cancelled; triangles that cannot be
-/// traced.
+/// a)(g - b) has the mean of the square of g's error. Paths are as many as form factors of
+/// rays_per_patch are worth: coarse files are checked in less time. Errors: cancelled; triangles
+/// that cannot be traced.
 Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& tracer,
-                             size_t own_places, uint64_t seed, matrix::RelightData& data,
-                             Progress& progress);
+                             size_t own_places, int rays_per_patch, uint64_t seed,
+                             matrix::RelightData& data, Progress& progress);
 
 /// Light that is compared with the path tracer's.
 struct RelitPlaces {

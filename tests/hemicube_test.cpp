@@ -119,22 +119,6 @@ TEST(SlowVertexColors, AreTheLight) {
   EXPECT_NEAR(cornell[0] / mean_irradiance(lightmap_of(s.path / "cornell-box.glb")), 1, 0.02);
 }
 
-/// tools/validate_gltf.mjs puts these before the Khronos validator.
-TEST(SlowVertexColors, LeaveSamplesForTheValidator) {
-  const ScratchFolder s;
-  const std::filesystem::path folder = std::filesystem::path(LUXEL_BINARY_DIR) / "glb_samples";
-  std::filesystem::create_directories(folder);
-  for (const char* elements : {"vertex", "triangle"}) {
-    ASSERT_EQ(bake_for_hemicube(scene_file("spheres-and-cube.glb"), s.path / "b",
-                                "--vertex-colors --elements " + std::string(elements))
-                  .code,
-              0);
-    std::filesystem::copy_file(s.path / "b" / "baked.glb",
-                               folder / ("lit-per-" + std::string(elements) + ".glb"),
-                               std::filesystem::copy_options::overwrite_existing);
-  }
-}
-
 /// Expects failure: code, a sentence with `words`, and no output folder.
 void expect_hemicube_refused(const std::string& options, int code, const std::string& words) {
   const ScratchFolder scratch;

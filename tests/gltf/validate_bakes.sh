@@ -26,11 +26,13 @@ bake() {
   "$luxel" bake "$root/scenes/$scene" -o "$folder/$name" --quiet --resolution 128 "$@"
 }
 few="--samples 4"
-# Unquoted: two words.
+coarse="--solver hemicube --hemicube 16 --max-elements 1500"
+# Unquoted: several words.
 bake lightmap cornell-box.glb $few
 bake combined foliage.glb $few --attach combined
 bake emissive cornell-box.glb $few --attach emissive
-bake vertices cornell-box.glb --solver hemicube --vertex-colors
+bake vertices cornell-box.glb $coarse --vertex-colors
+bake triangles spheres-and-cube.glb $coarse --vertex-colors --elements triangle
 bake layers ies/wall.gltf $few --layers per-light
 bake normal-map bumps.glb $few --directional sh1
 bake pages tiled-kit.glb $few --pages 2

@@ -32,7 +32,7 @@ std::vector<trace::Ray> rays_of(const trace::CameraRays& camera, std::span<const
   return rays;
 }
 
-/// Whether a step from one pixel to the other can be seen.
+/// True if a step from one pixel to the other can be seen.
 bool differ(const float* a, const float* b) {
   float most = 0, difference = 0;
   for (int c = 0; c < 3; ++c) {

@@ -115,12 +115,12 @@ TEST(ToneMapping, ExposureAndCurvesAreThoseOfTheirNames) {
 TEST(ContactSheetCommand, HoldsAllTechniquesOfAScene) {
   const ScratchFolder s;
   const CommandResult r = luxel("render " + scene_file("cornell-box.glb") +
-                                " --technique all --size 64x48 --samples 4 --json -o " +
-                                (s.path / "sheet.png").string());
+                                " --technique all --size 64x48 --samples 4 --hemicube 8" +
+                                " --max-elements 200 --json -o " + (s.path / "sheet.png").string());
   ASSERT_EQ(r.code, 0) << r.err;
   const auto json = nlohmann::json::parse(r.out);
-  for (const char* name :
-       {"c", "ca", "cad", "cas", "cads", "cas-pixel", "cads-pixel", "normals", "lightmap", "path"})
+  for (const char* name : {"c", "ca", "cad", "cas", "cads", "cas-pixel", "cads-pixel", "normals",
+                           "radiosity", "lightmap", "path"})
     EXPECT_THAT(json["tiles"].get<std::vector<std::string>>(), ::testing::Contains(name));
   const auto png = *image::decode_ldr(*read_file(s.path / "sheet.png"), "sheet.png");
   EXPECT_EQ(png.width, json["width"]);
@@ -136,8 +136,8 @@ TEST(ContactSheetCommand, DrawsTheBakeThatItIsGiven) {
           .code,
       0);
   const std::string command = "render " + furnace +
-                              " --technique all --size 32x24 --samples 1 -o " +
-                              (s.path / "x.png").string() + " --from ";
+                              " --technique all --size 32x24 --samples 1 --hemicube 8" +
+                              " --max-elements 200 -o " + (s.path / "x.png").string() + " --from ";
   const CommandResult with = luxel(command + (s.path / "b").string());
   EXPECT_EQ(with.code, 0) << with.err;
   EXPECT_EQ(with.err.find("packing"), std::string::npos) << "no second bake";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "luxel/base/file.h"
 #include "luxel/export/baked_glb.h"
@@ -42,17 +43,30 @@ struct Shot {
   nlohmann::json page;  ///< what tools/screenshot.mjs says
 };
 
-/// A page as Chromium draws it, as large as `size`.
-Shot shoot(const std::string& page, const image::Image8& size, const std::string& options = "") {
+/// A page to draw as large as a picture.
+struct Page {
+  std::string url;
+  image::Image8 like;
+};
+
+/// Pages as one Chromium draws them, whose start takes longer than a page.
+std::vector<Shot> shoot(const std::vector<Page>& pages, const std::string& options = "") {
   const ScratchFolder s;
-  const std::string command = "node " LUXEL_SOURCE_DIR "/tools/screenshot.mjs '" + page + "' " +
-                              (s.path / "shot.png").string() + " --size " +
-                              std::to_string(size.width) + "x" + std::to_string(size.height) + " " +
-                              options + " >" + (s.path / "out").string() + " 2>" +
-                              (s.path / "err").string();
+  const auto file = [&](size_t k) { return s.path / ("shot" + std::to_string(k) + ".png"); };
+  std::string command = "node " LUXEL_SOURCE_DIR "/tools/screenshot.mjs " + options;
+  for (size_t k = 0; k < pages.size(); ++k)
+    command += " --size " + std::to_string(pages[k].like.width) + "x" +
+               std::to_string(pages[k].like.height) + " '" + pages[k].url + "' " + file(k).string();
+  command += " >" + (s.path / "out").string() + " 2>" + (s.path / "err").string();
   EXPECT_EQ(std::system(command.c_str()), 0) << command << "\n"
                                              << slurp(s.path / "out") << slurp(s.path / "err");
-  return {picture_of(s.path / "shot.png"), nlohmann::json::parse(slurp(s.path / "out"))};
+  std::istringstream lines(slurp(s.path / "out"));
+  std::vector<Shot> shots;
+  for (std::string line; std::getline(lines, line);)
+    shots.push_back({picture_of(file(shots.size())), nlohmann::json::parse(line)});
+  EXPECT_EQ(shots.size(), pages.size());
+  shots.resize(pages.size());
+  return shots;
 }
 
 /// How far two pictures of 4 channels differ, alpha aside, over the pixels that `counts` accepts.
@@ -174,6 +188,10 @@ class ViewHtml : public ::testing::Test {
     EXPECT_EQ(r.code, 0) << r.err;
     return r.code == 0;
   }
+  /// The page of a bake, which is to be like its preview.
+  static Page page_of(const std::filesystem::path& folder) {
+    return {(folder / "view.html").string() + "#bare", picture_of(folder / "preview.png")};
+  }
 };
 
 // One step of 8 bits comes from rounding, others from where a card puts a texel's weights (8 bits
@@ -182,28 +200,36 @@ class ViewHtml : public ::testing::Test {
 // tone curve, not before. On 720 x 720 pixels the edges of a box and its furniture, about 5000
 // pixels long and a pixel or two wide, are under 2 %.
 TEST_F(ViewHtml, ShowsWhatThePreviewShows) {
-  for (const char* name : {"cornell-box.glb", "spheres-and-cube.glb"}) {
-    const ScratchFolder s;
-    if (!bake(scene_file(name), s.path / "b", "--resolution 256 --samples 32")) return;
-    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
-    expect_same(difference(shot.picture, preview, 3, every_pixel), name);
-    EXPECT_EQ(shot.page["requests"], nlohmann::json::array()) << "the page fetched something";
+  const ScratchFolder s;
+  const std::vector<std::string> names{"cornell-box.glb", "spheres-and-cube.glb"};
+  std::vector<Page> pages;
+  for (const std::string& name : names) {
+    if (!bake(scene_file(name), s.path / name, "--resolution 256 --samples 32")) return;
+    pages.push_back(page_of(s.path / name));
+  }
+  const std::vector<Shot> shots = shoot(pages);
+  for (size_t k = 0; k < shots.size(); ++k) {
+    expect_same(difference(shots[k].picture, pages[k].like, 3, every_pixel), names[k].c_str());
+    EXPECT_EQ(shots[k].page["requests"], nlohmann::json::array()) << "the page fetched something";
   }
 }
 
 // Three squares that share the meshes out, and one for each mesh: every texel must be looked up on
 // its own page.
 TEST_F(ViewHtml, ShowsEveryPage) {
+  const ScratchFolder s;
+  std::vector<Page> shown;
   for (const char* pages : {"--resolution 128 --pages 3", "--resolution 64 --pages mesh"}) {
-    const ScratchFolder s;
-    if (!bake(scene_file("spheres-and-cube.glb"), s.path / "b",
+    const std::filesystem::path folder = s.path / std::to_string(shown.size());
+    if (!bake(scene_file("spheres-and-cube.glb"), folder,
               std::string("--samples 32 --uv unwrap ") + pages))
       return;
-    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
-    expect_same(difference(shot.picture, preview, 3, every_pixel), pages);
+    shown.push_back(page_of(folder));
   }
+  const std::vector<Shot> shots = shoot(shown);
+  for (size_t k = 0; k < shots.size(); ++k)
+    expect_same(difference(shots[k].picture, shown[k].like, 3, every_pixel),
+                k == 0 ? "three pages" : "a page for each mesh");
 }
 
 /// Smooth all around, another colour in every direction, `width` pixels wide.
@@ -232,21 +258,24 @@ TEST_F(ViewHtml, ShowsTheSurroundings) {
     ASSERT_TRUE(write_file_atomically(s.path / ("map" + std::to_string(width) + ".hdr"),
                                       colourful_map(width)));
   const std::string map = "--environment " + (s.path / "map").string();
+  const std::vector<std::string> lights{map + "16.hdr,100,2", map + "1200.hdr,-37",
+                                        map + "16.hdr --background 0.5,0,1", "--sky 20,15"};
+  std::vector<Page> pages;
   for (const bool parallel : {false, true})
-    for (const std::string& light :
-         {map + "16.hdr,100,2", map + "1200.hdr,-37", map + "16.hdr --background 0.5,0,1",
-          std::string("--sky 20,15")}) {
+    for (const std::string& light : lights) {
       scene.cameras.assign(1, {});  // towards -Z, half a radian up at the picture's top
       scene.cameras[0].fov_y_rad = 1.2f;
       scene.cameras[0].orthographic_height_m = parallel ? 3 : 0;
       ASSERT_TRUE(write_file_atomically(s.path / "plate.glb", *export_::scene_glb(scene)));
-      if (!bake((s.path / "plate.glb").string(), s.path / "b",
-                "--resolution 32 --samples 64 " + light))
+      const std::filesystem::path folder = s.path / std::to_string(pages.size());
+      if (!bake((s.path / "plate.glb").string(), folder, "--resolution 32 --samples 64 " + light))
         return;
-      const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-      const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
-      expect_same(difference(shot.picture, preview, 3, every_pixel), light.c_str());
+      pages.push_back(page_of(folder));
     }
+  const std::vector<Shot> shots = shoot(pages);
+  for (size_t k = 0; k < shots.size(); ++k)
+    expect_same(difference(shots[k].picture, pages[k].like, 3, every_pixel),
+                lights[k % lights.size()].c_str());
 }
 
 // Textures, their transforms, vertex colours, metal, masks, one-sided backs, mirrors, no lightmap
@@ -257,9 +286,8 @@ TEST_F(ViewHtml, KnowsEveryMaterial) {
   ASSERT_TRUE(glb);
   ASSERT_TRUE(write_file_atomically(s.path / "each.glb", *glb));
   if (!bake((s.path / "each.glb").string(), s.path / "b", "--resolution 256 --samples 64")) return;
-  const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-  const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
-  expect_same(difference(shot.picture, preview, 3, every_pixel), "one of each");
+  const Page page = page_of(s.path / "b");
+  expect_same(difference(shoot({page})[0].picture, page.like, 3, every_pixel), "one of each");
 }
 
 // Orthographic; rolled and tilted; wider than high, which the picture then is; looking straight
@@ -274,8 +302,9 @@ TEST_F(ViewHtml, StartsWithAnyCamera) {
   cameras[2].world_from_camera = translation({2, 1.6f, 5});
   cameras[2].aspect = 1.6f;
   cameras[3].world_from_camera = from_columns({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {1.7f, 8, 0});
+  const ScratchFolder s;
+  std::vector<Page> pages;
   for (size_t i = 0; i < cameras.size(); ++i) {
-    const ScratchFolder s;
     scene::Scene scene = one_of_each();
     if (i == 3)  // lay the wall down
       for (scene::Instance& instance : scene.instances)
@@ -283,12 +312,14 @@ TEST_F(ViewHtml, StartsWithAnyCamera) {
             from_columns({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {}) * instance.world_from_object;
     scene.cameras = {cameras[i]};
     ASSERT_TRUE(write_file_atomically(s.path / "each.glb", *export_::scene_glb(scene)));
-    if (!bake((s.path / "each.glb").string(), s.path / "b", "--resolution 128 --samples 16"))
-      return;
-    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
-    expect_same(difference(shot.picture, preview, 3, every_pixel), std::to_string(i).c_str());
+    const std::filesystem::path folder = s.path / std::to_string(i);
+    if (!bake((s.path / "each.glb").string(), folder, "--resolution 128 --samples 16")) return;
+    pages.push_back(page_of(folder));
   }
+  const std::vector<Shot> shots = shoot(pages);
+  for (size_t i = 0; i < shots.size(); ++i)
+    expect_same(difference(shots[i].picture, pages[i].like, 3, every_pixel),
+                std::to_string(i).c_str());
 }
 
 // Where a pixel's middle lies beside a face that is seen edge-on, the light is looked up on the
@@ -320,8 +351,8 @@ TEST_F(ViewHtml, FacesSeenEdgeOnHaveTheirOwnLight) {
   const ScratchFolder s;
   ASSERT_TRUE(write_file_atomically(s.path / "block.glb", *export_::scene_glb(scene)));
   if (!bake((s.path / "block.glb").string(), s.path / "b", "--resolution 256 --samples 64")) return;
-  const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-  const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+  const Page page = page_of(s.path / "b");
+  const Shot shot = shoot({page})[0];
   const auto darkest = [](const image::Image8& picture) {
     uint8_t least = 255;
     for (size_t i = 0; i < picture.data.size(); i += 4) least = std::min(least, picture.data[i]);
@@ -330,8 +361,8 @@ TEST_F(ViewHtml, FacesSeenEdgeOnHaveTheirOwnLight) {
   // Sides have some third of the light around them; of a pixel's samples there are 4 here and 9 in
   // the preview, blended after the tone curve here and before it there. Looked up in the dark, one
   // sample of 4 took 50 from the pixel's 200.
-  EXPECT_GT(darkest(preview), 100);
-  EXPECT_GT(darkest(shot.picture), darkest(preview) - 15);
+  EXPECT_GT(darkest(page.like), 100);
+  EXPECT_GT(darkest(shot.picture), darkest(page.like) - 15);
 }
 
 /// Two lamps and a panel in a box, which a camera looks into.
@@ -365,11 +396,8 @@ TEST_F(ViewHtml, SlidersAreLamps) {
   if (!bake(write("a.glb", three_lights(warm, cool, panel)), s.path / "a",
             options + " --layers per-light"))
     return;
-  const std::string page = (s.path / "a" / "view.html").string();
+  const Page page = page_of(s.path / "a");
   const auto json = nlohmann::json::parse(slurp(s.path / "a" / "bake.json"));
-  const image::Image8 preview = picture_of(s.path / "a" / "preview.png");
-  expect_same(difference(shoot(page + "#bare", preview).picture, preview, 3, every_pixel),
-              "all at 1");
   const auto b = three_lights(warm * 0.5f, cool * Rgb{1, 0, 0}, {});
   ASSERT_TRUE(bake(write("b.glb", b), s.path / "b", options));
   const auto other = nlohmann::json::parse(slurp(s.path / "b" / "bake.json"));
@@ -377,10 +405,11 @@ TEST_F(ViewHtml, SlidersAreLamps) {
                                                      json["preview"]["exposure"].get<double>()));
   const std::string lamp = json["layers"][2]["name"];
   const image::Image8 wanted = picture_of(s.path / "b" / "preview.png");
-  const Shot shot =
-      shoot(page + "#bare,left=0.5,right=1:ff0000," + lamp + "=0,stops=" + stops, wanted);
+  const std::vector<Shot> shots =
+      shoot({page, {page.url + ",left=0.5,right=1:ff0000," + lamp + "=0,stops=" + stops, wanted}});
+  expect_same(difference(shots[0].picture, page.like, 3, every_pixel), "all at 1");
   // Another bake: its own noise, of 64 rays a percent or two of the light, is a step or two.
-  const Difference d = difference(shot.picture, wanted, 8, every_pixel);
+  const Difference d = difference(shots[1].picture, wanted, 8, every_pixel);
   EXPECT_LT(d.mean, 1.5);
   EXPECT_LT(std::abs(d.bias), 0.5);
   EXPECT_LT(d.share_beyond, 0.03);
@@ -402,17 +431,18 @@ TEST_F(ViewHtml, ShowsLightAloneAndColourAlone) {
   ASSERT_TRUE(write_file_atomically(s.path / "plate.glb", *export_::scene_glb(scene)));
   if (!bake((s.path / "plate.glb").string(), s.path / "b", "--resolution 32 --samples 16")) return;
   const image::Image8 size{240, 180, 4, {}};
-  const auto shown = [&](const char* what) {
-    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare," + what, size);
-    return int(shot.picture.data[4 * (90 * 240 + 120)]);
-  };
+  std::vector<Page> pages;
+  for (const char* what : {"both", "light", "colour"})
+    pages.push_back({page_of(s.path / "b").url + "," + what, size});
+  const std::vector<Shot> shots = shoot(pages);
+  const auto middle = [&](size_t k) { return int(shots[k].picture.data.at(4 * (90 * 240 + 120))); };
   const auto byte = [](double linear) {
     return 255 * double(image::srgb_from_linear(float(linear)));
   };
   const auto shoulder = [](double x) { return 1 - 0.5 / (1 + (x - 0.5) / 0.5); };
-  EXPECT_NEAR(shown("both"), byte(shoulder(0.6)), 1);
-  EXPECT_NEAR(shown("light"), byte(shoulder(1.2)), 1);
-  EXPECT_NEAR(shown("colour"), byte(0.5), 1);
+  EXPECT_NEAR(middle(0), byte(shoulder(0.6)), 1);
+  EXPECT_NEAR(middle(1), byte(shoulder(1.2)), 1);
+  EXPECT_NEAR(middle(2), byte(0.5), 1);
 }
 
 // LinearToneMapping and the curve of preview.png are the same line up to one half of linear light,
@@ -428,15 +458,16 @@ TEST_F(ViewHtml, APageOfOnesOwnShowsWhatThePreviewShows) {
                 .code,
             0);
   const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-  for (const char* page : {"index.html", "index.html?exr"}) {
-    const Shot shot = shoot(page, preview,
-                            "--root " LUXEL_SOURCE_DIR "/examples/three --root " +
-                                (s.path / "b").string() + " --root " + web.string());
-    const Difference d = difference(shot.picture, preview, 4, [](const uint8_t* p) {
+  const std::vector<Page> pages{{"index.html", preview}, {"index.html?exr", preview}};
+  const std::vector<Shot> shots =
+      shoot(pages, "--root " LUXEL_SOURCE_DIR "/examples/three --root " + (s.path / "b").string() +
+                       " --root " + web.string());
+  for (size_t k = 0; k < shots.size(); ++k) {
+    const Difference d = difference(shots[k].picture, preview, 4, [](const uint8_t* p) {
       return p[0] < 188 && p[1] < 188 && p[2] < 188;
     });
     EXPECT_GT(d.pixels, 0.3 * preview.width * preview.height);
-    expect_same(d, page);
+    expect_same(d, pages[k].url.c_str());
   }
 }
 

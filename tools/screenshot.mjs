@@ -1,10 +1,10 @@
-// Takes a picture of a page in headless Chromium, and says which requests the page made.
+// Takes pictures of pages in headless Chromium, and says which requests each page made.
 //
-//   node tools/screenshot.mjs PAGE OUT.png [--size 960x720] [--root FOLDER]...
+//   node tools/screenshot.mjs [--root FOLDER]... [--size 960x720] PAGE OUT.png [[--size WxH] PAGE OUT.png]...
 //
 // PAGE is a file, or with --root a path on a server of those folders (the first that has a file
-// gives it). The page is ready when the promise window.luxelReady is. Prints {"requests": [...],
-// "messages": [...]}: URLs other than the page's own, data: and blob:, and what its console said.
+// gives it). The page is ready when the promise window.luxelReady is. Prints a line for each page, {"requests":
+// [...], "messages": [...]}: URLs other than the page's own, data: and blob:, and what its console said.
 // Chromium is spoken to in its DevTools protocol, through a pipe, so that nothing needs installing.
 import { spawn } from "node:child_process";
 import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
@@ -14,18 +14,19 @@ import path from "node:path";
 import { pathToFileURL } from "node:url";
 
 function parse(args) {
-  const options = { plain: [], roots: [], size: "960x720" };
+  const pages = [], roots = [];
+  let size = "960x720";
   while (args.length) {
     const arg = args.shift();
-    if (arg === "--root") options.roots.push(args.shift());
-    else if (arg === "--size") options.size = args.shift();
-    else options.plain.push(arg);
+    if (arg === "--root") roots.push(args.shift());
+    else if (arg === "--size") size = args.shift();
+    else pages.push({ page: arg, out: args.shift(), size });
   }
-  if (options.plain.length !== 2 || !/^\d+x\d+$/.test(options.size)) {
-    console.error("usage: node tools/screenshot.mjs PAGE OUT.png [--size WxH] [--root FOLDER]...");
+  if (!pages.length || pages.some(({ out, size }) => !out || !/^\d+x\d+$/.test(size))) {
+    console.error("usage: node tools/screenshot.mjs [--root FOLDER]... [--size WxH] PAGE OUT.png ...");
     process.exit(2);
   }
-  return options;
+  return { pages, roots };
 }
 
 const types = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json" };
@@ -85,14 +86,10 @@ const ready = `(async () => {
 })()`;
 
 async function main() {
-  const { plain: [page, out], roots, size } = parse(process.argv.slice(2));
-  const [width, height] = size.split("x").map(Number);
+  const { pages, roots } = parse(process.argv.slice(2));
   const profile = await mkdtemp(path.join(tmpdir(), "luxel-chromium-"));
   const server = roots.length ? await serve(roots) : null;
-  const [file, fragment] = page.split("#");
-  const url = (server ? `http://127.0.0.1:${server.address().port}/${page}`
-    : pathToFileURL(file).href + (fragment ? `#${fragment}` : ""));
-  const requests = [], messages = [];
+  let requests, messages;
   const { browser, send } = start(profile, ({ method, params }) => {
     if (method === "Network.requestWillBeSent" && !/^(data|blob):/.test(params.request.url))
       requests.push(params.request.url);
@@ -103,20 +100,28 @@ async function main() {
       messages.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
   });
   try {
-    const { targetId } = await send("Target.createTarget", { url: "about:blank" });
-    const { sessionId } = await send("Target.attachToTarget", { targetId, flatten: true });
-    for (const domain of ["Network", "Page", "Runtime", "Log"]) await send(`${domain}.enable`, {}, sessionId);
-    await send("Emulation.setDeviceMetricsOverride",
-      { width, height, deviceScaleFactor: 1, mobile: false }, sessionId);
-    await send("Page.navigate", { url }, sessionId);
-    const { exceptionDetails } = await send("Runtime.evaluate",
-      { expression: ready, awaitPromise: true }, sessionId);
-    const shot = await send("Page.captureScreenshot", { format: "png" }, sessionId);
-    await writeFile(out, Buffer.from(shot.data, "base64"));
-    console.log(JSON.stringify({ requests: requests.filter((r) => r !== url.split("#")[0]), messages }));
-    if (exceptionDetails) {
-      console.error(exceptionDetails.exception?.description ?? exceptionDetails.text);
-      process.exitCode = 1;
+    for (const { page, out, size } of pages) {
+      const [width, height] = size.split("x").map(Number);
+      const [file, fragment] = page.split("#");
+      const url = (server ? `http://127.0.0.1:${server.address().port}/${page}`
+        : pathToFileURL(file).href + (fragment ? `#${fragment}` : ""));
+      requests = [], messages = [];
+      const { targetId } = await send("Target.createTarget", { url: "about:blank" });
+      const { sessionId } = await send("Target.attachToTarget", { targetId, flatten: true });
+      for (const domain of ["Network", "Page", "Runtime", "Log"]) await send(`${domain}.enable`, {}, sessionId);
+      await send("Emulation.setDeviceMetricsOverride",
+        { width, height, deviceScaleFactor: 1, mobile: false }, sessionId);
+      await send("Page.navigate", { url }, sessionId);
+      const { exceptionDetails } = await send("Runtime.evaluate",
+        { expression: ready, awaitPromise: true }, sessionId);
+      const shot = await send("Page.captureScreenshot", { format: "png" }, sessionId);
+      await writeFile(out, Buffer.from(shot.data, "base64"));
+      console.log(JSON.stringify({ requests: requests.filter((r) => r !== url.split("#")[0]), messages }));
+      if (exceptionDetails) {
+        console.error(exceptionDetails.exception?.description ?? exceptionDetails.text);
+        process.exitCode = 1;
+      }
+      await send("Target.closeTarget", { targetId });
     }
     await send("Browser.close");
   } finally {

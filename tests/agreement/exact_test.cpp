@@ -97,13 +97,13 @@ class SlowExact : public testing::TestWithParam<std::string> {
     z_squares_ += z * z, ++judged_;
   }
 
-  void expect_reached(const ExactCase& c) {
+  void expect_reached(const ExactCase& c, const MeasureEffort& effort = kEffort) {
     const std::string& solver = GetParam();
     const auto start = Clock::now();
     Progress progress;
     const auto p = prepare(c.scene, c.resolution, progress);
     ASSERT_TRUE(p) << p.error().message;
-    const auto measured = measure(**p, c, solver, kEffort, progress);
+    const auto measured = measure(**p, c, solver, effort, progress);
     ASSERT_TRUE(measured) << measured.error().message;
     for (size_t k = 0; k < c.parts.size(); ++k) {
       const Measured& m = (*measured)[k];
@@ -129,8 +129,10 @@ INSTANTIATE_TEST_SUITE_P(Solvers, SlowExact, testing::ValuesIn(solver_names()),
 TEST_P(SlowExact, ReachesASolutionOfEveryLaw) {
   const auto cases = *exact_cases(shared::reference_text("reference/exact-solutions.md"));
   ASSERT_EQ(std::count_if(cases.begin(), cases.end(), stands_for_a_law), std::size(kLaws));
+  MeasureEffort effort = kEffort;
+  effort.patches = 2048;
   for (const ExactCase& c : cases)
-    if (stands_for_a_law(c)) expect_reached(c);
+    if (stands_for_a_law(c)) expect_reached(c, effort);
 }
 
 TEST_P(SlowExact, ReachesEveryExactSolution) {

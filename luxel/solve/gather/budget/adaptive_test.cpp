@@ -237,7 +237,7 @@ TEST(Estimates, GoOnWithRounds) {
   EXPECT_GT(shown.back().samples, 16);
 }
 
-// The judge: 64 times the rays of what is judged, with noise of its own about a tenth as large.
+// The judge: 16 times the rays of what is judged, with noise of its own about a fifth as large.
 class SlowAdaptive : public testing::Test {
  protected:
   static const Room& room() {
@@ -246,10 +246,10 @@ class SlowAdaptive : public testing::Test {
   }
   static const Gather& judge() {
     static const Gather instance =
-        solve(room(), {.samples = 16384, .direct_samples = 4096, .supersample = 256, .seed = 7});
+        solve(room(), {.samples = 4096, .direct_samples = 1024, .supersample = 64, .seed = 7});
     return instance;
   }
-  /// The judge's own noise is a tenth of what it judges at 2 %: it adds half a per cent. The claim
+  /// The judge's own noise is a fifth of what it judges at 2 %: it adds two per cent. The claim
   /// is made of 512 texels, which know it to 3 to 5 %.
   static void expect_rms(float max_error) {
     const Gather light = solve(room(), {.samples = 32,

@@ -106,7 +106,7 @@ TEST(BadInput, NotFiniteVerticesNameMeshAndVertex) {
 
 TEST(BadInput, NothingToLight) {
   Gltf gltf = square_gltf();
-  gltf.json["nodes"] = {nlohmann::json::object()};
+  gltf.json["nodes"] = nlohmann::json::array({nlohmann::json::object()});
   EXPECT_THAT(error_of(import_glb(gltf)), HasSubstr("no triangles"));
 }
 

@@ -21,7 +21,7 @@ Gltf square_with_material(nlohmann::json material) {
   primitive["attributes"]["TEXCOORD_0"] = uv0;
   primitive["attributes"]["TEXCOORD_1"] = uv1;
   primitive["material"] = 0;
-  gltf.json["materials"] = {std::move(material)};
+  gltf.json["materials"] = nlohmann::json::array({std::move(material)});
   return gltf;
 }
 
@@ -238,7 +238,7 @@ Gltf square_with_texture(nlohmann::json texture, const std::vector<std::string>&
       {{"name", "brick"},
        {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}});
   for (const std::string& picture : pictures) add_texture(gltf, picture);
-  gltf.json["textures"] = {std::move(texture)};
+  gltf.json["textures"] = nlohmann::json::array({std::move(texture)});
   return gltf;
 }
 

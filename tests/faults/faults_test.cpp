@@ -1,5 +1,6 @@
 // A small bake in which one call fails: each write, fsync, rename, open and read of its files, and
 // allocations. Each ends with a right result, or with a code, a sentence and no half-written file.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

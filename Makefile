@@ -24,7 +24,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { jobs = int($$2 / 2097152); \
           print jobs < 1 ? 1 : jobs < cores ? jobs : cores }' /proc/meminfo)
 
-# More arguments for configuring: .ci/run gives -DLUXEL_WERROR=ON. The sanitizers see warnings that are none.
+# More arguments for configuring: .ci/run gives -DLUXEL_WERROR=ON.
 CONFIGURE ?=
 
 .DEFAULT_GOAL := all
@@ -104,10 +104,10 @@ docs: luxel-bench setup-docs
 bench: luxel-bench
 	$(LUXEL) bench all
 
-# The fast tests under AddressSanitizer and UndefinedBehaviorSanitizer. Leak detection stays on:
-# neither Embree nor TBB needs a suppression.
+# The fast tests under clang's AddressSanitizer and UndefinedBehaviorSanitizer, and a corpus of the fuzzers. Leak
+# detection stays on: neither Embree nor TBB needs a suppression.
 asan: setup-tests
-	cmake --preset asan
+	cmake --preset asan $(CONFIGURE)
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)
 

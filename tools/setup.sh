@@ -48,8 +48,12 @@ if [[ ${1:-} == package || ${1:-} == tests ]]; then
   command -v dpkg-shlibdeps >/dev/null || wanted+=(dpkg-dev)
   command -v file >/dev/null || wanted+=(file)
 fi
-if [[ ${1:-} == tests ]]; then
+if [[ ${1:-} == fuzz || ${1:-} == tests ]]; then
   command -v clang++ >/dev/null || wanted+=(clang)
+  command -v llvm-symbolizer >/dev/null || wanted+=(llvm) # lines in what the sanitizers say
+  [[ -n $(find /usr/lib -name 'libclang_rt.fuzzer-*' -print -quit 2>/dev/null) ]] || wanted+=(libclang-rt-dev)
+fi
+if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
@@ -70,10 +74,6 @@ if [[ ${1:-} == tests ]]; then
   # The layer that checks how a graphics device is used.
   compgen -G '/usr/share/vulkan/explicit_layer.d/*validation*.json' >/dev/null ||
     wanted+=(vulkan-validationlayers)
-fi
-if [[ ${1:-} == fuzz ]]; then
-  command -v clang++ >/dev/null || wanted+=(clang)
-  [[ -n $(find /usr/lib -name 'libclang_rt.fuzzer-*' -print -quit 2>/dev/null) ]] || wanted+=(libclang-rt-dev)
 fi
 if [[ ${1:-} == docs ]]; then
   command -v doxygen >/dev/null || wanted+=(doxygen)

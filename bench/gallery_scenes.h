@@ -40,8 +40,7 @@ inline constexpr std::array kGallery{
     GalleryScene{"zdm2/zdm2.glb",
                  "zdm2, a level of Sauerbraten. By Chaseter, Suicizer, I.g( and friends (Godot "
                  "Engine demo projects), CC BY 4.0.",
-                 {{GalleryView{{15.26f, 1.2f, -2.14f}, {5.26f, 1, 7.86f}, 58},
-                   GalleryView{{3, 7.2f, 4}, {16, 5, -9}, 62}}}},
+                 {{GalleryView{{15.26f, 1.2f, -2.14f}, {5.26f, 1, 7.86f}, 58}}}},
     GalleryScene{"japanese_bridge_garden/japanese_bridge_garden.glb",
                  "\"Japanese Bridge Garden\" by kristenlee, CC BY 4.0, turned to "
                  "metallic-roughness materials. Its lanterns are the only light.",

@@ -13,7 +13,7 @@
 namespace luxel::display {
 namespace {
 
-constexpr size_t kAtOnce = 256;  ///< pixels whose rays fit in a core's cache
+constexpr size_t kPixelsAtOnce = 256;  ///< pixels whose rays fit in a core's cache
 /// A step between neighbours that can be seen, as a share of the brighter one: four of 255 in
 /// bright places.
 constexpr float kSeenStep = 1.0f / 32;
@@ -105,7 +105,7 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
   std::iota(pixels.begin(), pixels.end(), 0);
   const auto draw_pixels = [&](int per_axis) {
     const size_t per_pixel = size_t(per_axis * per_axis);
-    parallel_for(pixels.size(), kAtOnce, [&](size_t begin, size_t end) {
+    parallel_for(pixels.size(), kPixelsAtOnce, [&](size_t begin, size_t end) {
       if (progress.cancelled()) return;
       const std::span some = std::span(pixels).subspan(begin, end - begin);
       std::vector<trace::Ray> rays = rays_of(through, some, per_axis);

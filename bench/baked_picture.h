@@ -6,7 +6,7 @@
 
 namespace luxel::bench {
 
-/// What a camera sees of the bake, drawn from the texels' light as preview.png is [W/(sr m^2)].
+/// A camera's picture of the bake, drawn from the texels' light as preview.png is [W/(sr m^2)].
 /// Errors: cancelled.
 Result<image::Image> draw_baked(const pipeline::Bake& bake, const trace::RayTracer& tracer,
                                 const scene::Camera& camera, std::span<const Rgb> irradiance,

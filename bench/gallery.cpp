@@ -37,6 +37,11 @@ std::string stem_of(const GalleryScene& scene) {
   return std::filesystem::path(scene.file).stem().string();
 }
 
+std::span<const GalleryView> views_of(const GalleryScene& scene) {
+  const auto none = std::ranges::find(scene.views, 0.0f, &GalleryView::fov_y_deg);
+  return {scene.views.begin(), none};
+}
+
 /// Names of pictures, after "gallery-".
 std::string picture_of(const std::string& scene, size_t view) {
   return scene + (view == 0 ? "" : fmt::format("-{}", view + 1)) + ".jpg";
@@ -110,7 +115,7 @@ Result<PathPictures> trace_pictures(const scene::Scene& scene, const trace::RayT
   return out;
 }
 
-/// What the page shows of a scene: pictures of its views, and the first view beside paths.
+/// A scene on the page: its row, pictures of its views, and the first view beside paths.
 struct Shown {
   Row row;
   std::vector<PageFile> files;
@@ -132,7 +137,7 @@ Result<Shown> show_scene(const GalleryScene& scene, const std::filesystem::path&
   };
 
   // 1. The views, each with the exposure that luxel render gives it.
-  for (size_t k = 0; k < scene.views.size() && scene.views[k].fov_y_deg > 0; ++k) {
+  for (size_t k = 0; k < views_of(scene).size(); ++k) {
     LUXEL_TRY(const image::Image drawn, draw(camera_of(scene.views[k]), kPicture));
     const image::Image seen = on_screen(drawn, pipeline::exposure_factor({}, drawn));
     out.files.push_back({picture_of(row.scene, k), jpeg_of(image::to_srgb8(seen))});
@@ -203,7 +208,7 @@ std::string page_of(std::span<const Row> rows) {
     bakes.push_back({name, r->pages == 1 ? size : fmt::format("{} pages of {}", r->pages, size),
                      fmt::format("{:.0f}", r->bake_seconds)});
     pictures += fmt::format("## {}\n\n{}\n\n", name, scene.credit);
-    for (size_t k = 0; k < scene.views.size() && scene.views[k].fov_y_deg > 0; ++k)
+    for (size_t k = 0; k < views_of(scene).size(); ++k)
       pictures += fmt::format("![{}](../images/gallery-{})\n\n", name, picture_of(name, k));
     if (scene.is_noisy) continue;
     paths.push_back({name, fmt::format("{}", r->paths), fmt::format("{:.0f}", r->path_seconds),
@@ -223,8 +228,8 @@ std::string page_of(std::span<const Row> rows) {
       "Left: the bake. Right: the same view by path tracing, with the same exposure. FLIP is the "
       "difference that a person sees who flips between both pictures, from 0 to 1 "
       "([compare.md](../method/compare.md)). *Noise of the paths* is FLIP between two pictures of "
-      "half as many paths; the picture on the right is their mean. Scenes whose paths are still "
-      "noisy after thousands per pixel are not here.\n\n{}\n{}",
+      "half as many paths; the picture on the right is their mean. Scenes whose paths need too "
+      "long to lose their noise are not here.\n\n{}\n{}",
       pictures, machine_name(), markdown_table({"scene", "lightmap", "seconds of the bake"}, bakes),
       markdown_table(
           {"scene", "paths per pixel", "seconds of the paths", "FLIP", "noise of the paths"},

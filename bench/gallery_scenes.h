@@ -19,7 +19,7 @@ struct GalleryScene {
   std::string_view file;    ///< in shared/scenes
   std::string_view credit;  ///< what it is, whose, and its licence
   std::array<GalleryView, 2> views;
-  /// Some thousand paths per pixel still leave visible noise: no path-traced picture.
+  /// Paths need too long here to lose their noise: no path-traced picture.
   bool is_noisy = false;
 };
 

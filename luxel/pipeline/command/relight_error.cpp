@@ -15,7 +15,7 @@ namespace {
 
 /// Errors lie in corners and at contacts: of so many places, some tens do.
 constexpr size_t kPlaces = 512;
-/// For each of two answers. A coarse file is off by more than the noise of few paths.
+/// Paths for each of two answers. A coarse file is off by more than the noise of few paths.
 constexpr int kLeastPaths = 16, kMostPaths = 256;
 constexpr uint64_t kLamps = 4;
 
@@ -34,7 +34,7 @@ struct Check {
   int paths = kMostPaths;
 };
 
-/// So many that a check takes about as long as the form factors.
+/// Paths with which a check takes about as long as the form factors.
 int paths_to_check(size_t patches, int rays_per_patch) {
   const uint64_t rays = uint64_t(patches) * uint64_t(rays_per_patch);
   return int(std::clamp<uint64_t>(rays / (7 * kPlaces), kLeastPaths, kMostPaths));

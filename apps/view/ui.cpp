@@ -14,7 +14,7 @@
 namespace luxel::view_window {
 namespace {
 
-constexpr float kLetters = 13;  ///< height of ImGui's own [points]
+constexpr float kLettersHeight = 13;  ///< height of ImGui's own [points]
 
 /// One attachment that is drawn over and shown afterwards.
 VkRenderPass make_pass(const UiDevice& device) {
@@ -141,7 +141,7 @@ class ImGuiUi : public Ui {
     vkDeviceWaitIdle(device_.device);
     ImGui_ImplVulkan_Shutdown();
     ImFontConfig letters;
-    letters.SizePixels = std::round(kLetters * scale);
+    letters.SizePixels = std::round(kLettersHeight * scale);
     ImGui::GetIO().Fonts->Clear();
     ImGui::GetIO().Fonts->AddFontDefault(&letters);
     ImGui::GetIO().Fonts->Build();

@@ -223,8 +223,9 @@ void part_copies(const GltfEdits& edits, const std::vector<Mat34>& world, size_t
       tree.wanted[add_child(tree, node, child)] = affine(world[i]);
 }
 
-void move_instances(const GltfEdits& edits, GltfTree& tree,
-                    std::map<uint32_t, size_t>& light_nodes) {
+/// Errors: one hangs on the joints of a skin, which alone say where it is.
+Status move_instances(const GltfEdits& edits, const std::string& name, GltfTree& tree,
+                      std::map<uint32_t, size_t>& light_nodes) {
   std::vector<Mat34> world = edits.world_from_object;
   for (const GltfEdits::Placed& placed : edits.placed)
     world[placed.instance] = placed.world_from_object;
@@ -232,6 +233,11 @@ void move_instances(const GltfEdits& edits, GltfTree& tree,
     const size_t node = edits.node_of_instance[placed.instance];
     const OrderedJson& from = tree.document["nodes"].at(node);
     if (!from.contains("mesh")) continue;  // its copies have been parted
+    if (from.contains("skin"))
+      return fail(ErrorCode::unsupported,
+                  "{}: node {} ({}) hangs on its joints and cannot be moved; move them in your "
+                  "modeller",
+                  name, node, from.value("name", std::string()));
     if (from.contains("extensions") && from["extensions"].contains(kCopies)) {
       part_copies(edits, world, node, tree);
       continue;
@@ -241,6 +247,7 @@ void move_instances(const GltfEdits& edits, GltfTree& tree,
       light_nodes[uint32_t(node)] = light_apart(tree, node);
     tree.wanted[node] = affine(placed.world_from_object);
   }
+  return {};
 }
 
 // Lights.
@@ -350,7 +357,7 @@ Result<std::vector<std::byte>> edited_gltf(std::span<const std::byte> bytes,
     LUXEL_TRY_STATUS(bring_in_files(file->document, name, read));
     GltfTree tree = tree_of(file->document);
     std::map<uint32_t, size_t> lights_apart;
-    move_instances(edits, tree, lights_apart);
+    LUXEL_TRY_STATUS(move_instances(edits, name, tree, lights_apart));
     edit_lights(edits, lights_apart, tree);
     for (const scene::PunctualLight& light : edits.new_lights) add_light(light, tree);
     write_places(tree);

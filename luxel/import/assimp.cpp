@@ -163,18 +163,21 @@ bool is_trusting(std::string_view extension) {
   return extension == ".assbin" || extension == ".x3d" || extension == ".x3db";
 }
 
-const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& source,
-                              std::vector<std::string>& warnings) {
-  constexpr unsigned kSteps =
-      aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
+/// Assimp's reader, its checks, and triangles alone: points and lines are sorted out.
+Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFile& source,
+                                      std::vector<std::string>& warnings) {
+  // The scene is the importer's and not constant; Assimp says so only for its users' sake.
+  const auto own = [&] { return const_cast<aiScene*>(importer.GetScene()); };
   const std::string path = source.path.string();
-  const aiScene* in = importer.ReadFile(path, kSteps);
-  if (in != nullptr || source.extension != ".fbx" || !is_about_names(importer.GetErrorString()))
-    return in;
-  if (importer.ReadFile(path, 0) == nullptr) return nullptr;
-  // The scene is the importer's and not constant; GetScene() says so only for its users' sake.
-  make_names_unique(const_cast<aiScene&>(*importer.GetScene()), warnings);
-  return importer.ApplyPostProcessing(kSteps);
+  constexpr unsigned kCheck = aiProcess_ValidateDataStructure;
+  if (importer.ReadFile(path, kCheck) == nullptr && source.extension == ".fbx" &&
+      is_about_names(importer.GetErrorString()) && importer.ReadFile(path, 0) != nullptr) {
+    make_names_unique(*own(), warnings);
+    importer.ApplyPostProcessing(kCheck);
+  }
+  if (own() == nullptr) return nullptr;
+  LUXEL_TRY_STATUS(split_polygons(*own(), source, warnings));
+  return importer.ApplyPostProcessing(aiProcess_SortByPType);
 }
 
 /// What an .obj names in the place of its own material libraries.
@@ -261,7 +264,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* in = read_file_with(importer, source, imported.warnings);
+  LUXEL_TRY(const aiScene* in, read_file_with(importer, source, imported.warnings));
   if (in == nullptr || in->mRootNode == nullptr)
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(importer.GetErrorString()));

@@ -21,6 +21,10 @@ inline Mat34 mat34_of(const aiMatrix4x4& m) {
   return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
 }
 
+/// Makes triangles of all polygons (polygon.h), and warns of those that cross themselves. Errors: a
+/// polygon of too many corners; memory.
+Status split_polygons(aiScene& scene, const SourceFile& source, std::vector<std::string>& warnings);
+
 /// What turns the file's units and axes into metres with Y up, above Assimp's own root node. Warns
 /// when the file states nonsense.
 Mat34 world_from_file(const aiScene& in, const SourceFile& source,

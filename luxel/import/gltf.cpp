@@ -47,7 +47,7 @@ Result<Imported> read_gltf(const SourceFile& source) {
   const auto& [document, model] = loaded;
 
   Imported imported;
-  GltfReader reader{document, model, source, imported, scene::kNone};
+  GltfReader reader{document, model, source, imported, world_transforms(model)};
   for (const std::string& extension : ignored_extensions(document))
     reader.warn("{} is not supported and is ignored", extension);
   LUXEL_TRY_STATUS(read_materials(reader));

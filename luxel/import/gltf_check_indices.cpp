@@ -27,6 +27,8 @@ constexpr Reference kReferences[] = {
     {"nodes", "node", "mesh", "meshes"},
     {"nodes", "node", "camera", "cameras"},
     {"nodes", "node", "skin", "skins"},
+    {"skins", "skin", "skeleton", "nodes"},
+    {"skins", "skin", "inverseBindMatrices", "accessors"},
 };
 
 Status check_indices_of(const Json& document, const Json& primitive, const std::string& where) {
@@ -37,6 +39,15 @@ Status check_indices_of(const Json& document, const Json& primitive, const std::
     return fail(ErrorCode::bad_input, "{}: it has no attributes", where);
   for (const auto& item : attributes->items())
     LUXEL_TRY_STATUS(check_index(document, *attributes, item.key().c_str(), "accessors", where));
+  const auto targets = primitive.find("targets");
+  if (targets == primitive.end()) return {};
+  if (!targets->is_array()) return fail(ErrorCode::bad_input, "{}: targets is not a list", where);
+  for (const Json& target : *targets) {
+    if (!target.is_object())
+      return fail(ErrorCode::bad_input, "{}: a morph target is not an object", where);
+    for (const auto& item : target.items())
+      LUXEL_TRY_STATUS(check_index(document, target, item.key().c_str(), "accessors", where));
+  }
   return {};
 }
 
@@ -182,6 +193,13 @@ Status check_indices(const Json& document, const std::string& file) {
     const std::string where = file + ": " + name_of("node", i, nodes[i]);
     LUXEL_TRY_STATUS(check_index_list(document, nodes[i], "children", "nodes", where));
     LUXEL_TRY_STATUS(check_node_extensions(document, nodes[i], where));
+  }
+  const Json& skins = list_of(document, "skins");
+  for (size_t i = 0; i < skins.size(); ++i) {
+    const std::string where = file + ": " + name_of("skin", i, skins[i]);
+    if (!skins[i].contains("joints"))
+      return fail(ErrorCode::bad_input, "{}: it has no joints", where);
+    LUXEL_TRY_STATUS(check_index_list(document, skins[i], "joints", "nodes", where));
   }
   const Json& scenes = list_of(document, "scenes");
   for (size_t i = 0; i < scenes.size(); ++i)

@@ -1,43 +1,14 @@
 // The primitives of a glTF mesh become one scene::Mesh.
 #include <map>
 
-#include "luxel/import/gltf_accessor.h"
-#include "luxel/import/gltf_parts.h"
+#include "luxel/import/gltf_pose.h"
 
 namespace luxel::import {
 namespace {
 
 using Triangle = std::array<uint32_t, 3>;
-using Attributes = std::map<std::string, int>;
-
-/// The vertices of one primitive; arrays are empty or as long as positions.
-struct Vertices {
-  std::vector<Vec3> positions, normals;
-  std::vector<Vec2> uv0, uv1;
-  std::vector<Rgb> colors;
-};
-
-Result<Numbers> read_attribute(const GltfReader& reader, const Attributes& attributes,
-                               const char* name, std::initializer_list<size_t> components,
-                               size_t count, const std::string& where) {
-  const auto found = attributes.find(name);
-  if (found == attributes.end()) return Numbers{};
-  const std::string what = where + ", " + name;
-  LUXEL_TRY(Numbers numbers, read_numbers(reader.model, found->second, components, what));
-  if (numbers.count() != count)
-    return fail(ErrorCode::bad_input, "{}: {} values for {} positions", what, numbers.count(),
-                count);
-  return numbers;
-}
-
-std::vector<Vec3> to_vec3(const Numbers& numbers) {
-  std::vector<Vec3> values(numbers.count());
-  for (size_t i = 0; i < values.size(); ++i) {
-    const float* p = &numbers.values[i * numbers.components];
-    values[i] = {p[0], p[1], p[2]};
-  }
-  return values;
-}
+/// Attributes of a primitive, and those of its morph targets.
+using Sources = std::pair<Attributes, std::vector<Attributes>>;
 
 std::vector<Vec2> to_vec2(const Numbers& numbers) {
   std::vector<Vec2> values(numbers.count());
@@ -178,34 +149,50 @@ bool has_surface(GltfReader& reader, const tinygltf::Primitive& primitive,
   return true;
 }
 
+/// Vertices of the mesh that a primitive brought.
+struct Taken {
+  uint32_t start = 0, count = 0;
+  std::vector<bool> mirrored;
+};
+
 struct MeshBuilder {
   GltfReader& reader;
+  const Pose& pose;
   scene::Mesh mesh;
   bool some_normals = false;
   bool uv_filled = false;
-  /// Primitives often share all their vertices: the first vertex of those already taken over.
-  std::map<Attributes, std::pair<uint32_t, uint32_t>> taken;
+  std::map<Sources, Taken> taken;  ///< primitives often share all their vertices
 };
+
+void turn_mirrored(const std::vector<bool>& mirrored, std::vector<Triangle>& triangles) {
+  if (mirrored.empty()) return;
+  for (Triangle& t : triangles)
+    if (mirrored[t[0]]) std::swap(t[1], t[2]);
+}
 
 Status add_primitive(MeshBuilder& builder, const tinygltf::Primitive& primitive,
                      const std::string& where) {
   scene::Mesh& mesh = builder.mesh;
   uint32_t start = uint32_t(mesh.positions.size());
   std::vector<Triangle> triangles;
-  const auto known = builder.taken.find(primitive.attributes);
+  const Sources sources{primitive.attributes, primitive.targets};
+  const auto known = builder.taken.find(sources);
   if (known != builder.taken.end()) {
-    start = known->second.first;
-    LUXEL_TRY(triangles, read_triangles(builder.reader, primitive, known->second.second, where));
+    start = known->second.start;
+    LUXEL_TRY(triangles, read_triangles(builder.reader, primitive, known->second.count, where));
+    turn_mirrored(known->second.mirrored, triangles);
   } else {
     LUXEL_TRY(Vertices v, read_vertices(builder.reader, primitive.attributes, where));
+    LUXEL_TRY_STATUS(apply_pose(builder.reader, primitive, builder.pose, where, v));
     const size_t count = v.positions.size();
     if (mesh.positions.size() + 3 * count > UINT32_MAX)
       return fail(ErrorCode::unsupported, "{}: the mesh has over 4 billion vertices", where);
     LUXEL_TRY(triangles, read_triangles(builder.reader, primitive, count, where));
+    turn_mirrored(v.mirrored, triangles);
     if (builder.some_normals && v.normals.empty())
       make_flat(v, triangles);
     else
-      builder.taken[primitive.attributes] = {start, uint32_t(count)};
+      builder.taken[sources] = {start, uint32_t(count), std::move(v.mirrored)};
     builder.uv_filled |= append_vertices(mesh, v);
   }
   const uint32_t material = material_of(builder.reader, primitive);
@@ -217,23 +204,21 @@ Status add_primitive(MeshBuilder& builder, const tinygltf::Primitive& primitive,
   return {};
 }
 
-Result<scene::Mesh> read_mesh(GltfReader& reader, size_t index) {
+Result<scene::Mesh> read_mesh(GltfReader& reader, size_t index, const Pose& pose) {
   const tinygltf::Mesh& in = reader.model.meshes[index];
   const std::string name = reader.source.name + ": " + label("mesh", index, in.name);
-  MeshBuilder builder{reader, {}, false, false, {}};
+  MeshBuilder builder{reader, pose, {}, false, false, {}};
   builder.mesh.name = in.name;
-  bool morphs = false, unindexed = false;
+  bool unindexed = false;
   for (const tinygltf::Primitive& p : in.primitives)
     builder.some_normals |= p.attributes.count("NORMAL") > 0;
   for (size_t i = 0; i < in.primitives.size(); ++i) {
     const tinygltf::Primitive& primitive = in.primitives[i];
     const std::string where = name + fmt::format(", primitive {}", i);
     if (!has_surface(reader, primitive, where)) continue;
-    morphs |= !primitive.targets.empty();
     unindexed |= primitive.indices < 0;
     LUXEL_TRY_STATUS(add_primitive(builder, primitive, where));
   }
-  if (morphs) reader.out.warnings.push_back(name + " has morph targets; its base shape is used");
   if (builder.uv_filled)
     reader.out.warnings.push_back(
         name + ": only some primitives have texture coordinates; (0, 0) is used for the others");
@@ -245,11 +230,36 @@ Result<scene::Mesh> read_mesh(GltfReader& reader, size_t index) {
 }  // namespace
 
 Status read_meshes(GltfReader& reader) {
-  for (size_t i = 0; i < reader.model.meshes.size(); ++i) {
-    LUXEL_TRY(scene::Mesh mesh, read_mesh(reader, i));
-    reader.out.scene.meshes.push_back(std::move(mesh));
+  const tinygltf::Model& model = reader.model;
+  std::vector<bool> is_posed(model.meshes.size()), is_plain(model.meshes.size());
+  for (const tinygltf::Node& node : model.nodes)
+    if (node.mesh >= 0) (has_own_pose(model, node) ? is_posed : is_plain)[size_t(node.mesh)] = true;
+  for (size_t i = 0; i < model.meshes.size(); ++i) {
+    reader.out.scene.meshes.emplace_back();
+    if (is_posed[i] && !is_plain[i]) continue;
+    LUXEL_TRY(reader.out.scene.meshes.back(),
+              read_mesh(reader, i, Pose{model.meshes[i].weights, {}, {}}));
   }
   return {};
+}
+
+Result<scene::Mesh> posed_mesh(GltfReader& reader, size_t number) {
+  const tinygltf::Node& node = reader.model.nodes[number];
+  const auto index = size_t(node.mesh);
+  const std::string where = reader.source.name + ": " + label("node", number, node.name);
+  // Nodes may pose one mesh again and again.
+  uint64_t vertices = 0, corners = 0;
+  for (const tinygltf::Primitive& p : reader.model.meshes[index].primitives) {
+    const auto count_of = [&](int accessor) {
+      return accessor < 0 ? 0 : uint64_t(reader.model.accessors[size_t(accessor)].count);
+    };
+    const auto positions = p.attributes.find("POSITION");
+    const uint64_t own = positions == p.attributes.end() ? 0 : count_of(positions->second);
+    vertices += own, corners += p.indices < 0 ? own : count_of(p.indices);
+  }
+  LUXEL_TRY_STATUS(reader.source.memory.take(64 * vertices + 16 * corners, "the pose of " + where));
+  LUXEL_TRY(const Pose pose, pose_of(reader, number));
+  return read_mesh(reader, index, pose);
 }
 
 }  // namespace luxel::import

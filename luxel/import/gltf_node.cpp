@@ -1,6 +1,7 @@
 // The nodes of the default scene: instances, lights, cameras, each with its place in the world.
-#include "luxel/import/gltf_accessor.h"
-#include "luxel/import/gltf_parts.h"
+#include <map>
+
+#include "luxel/import/gltf_pose.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::import {
@@ -169,17 +170,41 @@ LightmapExtras first_of(const LightmapExtras& a, const LightmapExtras& b) {
   return {a.density ? a.density : b.density, a.bake ? a.bake : b.bake};
 }
 
-Status add_instances(GltfReader& reader, size_t index, const Mat34& world,
-                     const LightmapExtras& lightmap) {
+/// Poses of one mesh without a skin that nodes have in common.
+using KnownPoses = std::map<std::pair<int, std::vector<double>>, uint32_t>;
+
+/// The scene's mesh that a node draws.
+Result<uint32_t> mesh_of(GltfReader& reader, size_t index, KnownPoses& known) {
   const tinygltf::Node& node = reader.model.nodes[index];
-  if (node.mesh < 0 || reader.out.scene.meshes[size_t(node.mesh)].triangles.empty()) return {};
-  LUXEL_TRY(const std::vector<Mat34> copies,
-            copies_of(reader, node, reader.source.name + ": " + label("node", index, node.name)));
+  if (!has_own_pose(reader.model, node)) return uint32_t(node.mesh);
+  const std::pair key{node.mesh, node.weights};
+  if (const auto found = known.find(key); node.skin < 0 && found != known.end())
+    return found->second;
+  const auto mesh = uint32_t(reader.out.scene.meshes.size());
+  LUXEL_TRY(scene::Mesh posed, posed_mesh(reader, index));
+  reader.out.scene.meshes.push_back(std::move(posed));
+  if (node.skin < 0) known[key] = mesh;
+  return mesh;
+}
+
+/// A skin says where in the world its vertices are, whatever the node says that draws them.
+Status add_instances(GltfReader& reader, size_t index, const LightmapExtras& lightmap,
+                     KnownPoses& known) {
+  const tinygltf::Node& node = reader.model.nodes[index];
+  if (node.mesh < 0) return {};
+  LUXEL_TRY(const uint32_t mesh, mesh_of(reader, index, known));
+  if (reader.out.scene.meshes[mesh].triangles.empty()) return {};
+  std::vector<Mat34> copies(1);
+  if (node.skin < 0) {
+    LUXEL_TRY(copies,
+              copies_of(reader, node, reader.source.name + ": " + label("node", index, node.name)));
+    for (Mat34& copy : copies) copy = reader.world[index] * copy;
+  }
   const std::string& mesh_name = reader.model.meshes[size_t(node.mesh)].name;
   for (const Mat34& copy : copies)
-    reader.out.scene.instances.push_back(
-        {node.name.empty() ? mesh_name : node.name, uint32_t(node.mesh), world * copy,
-         lightmap.density.value_or(1.0f), lightmap.bake.value_or(true)});
+    reader.out.scene.instances.push_back({node.name.empty() ? mesh_name : node.name, mesh, copy,
+                                          lightmap.density.value_or(1.0f),
+                                          lightmap.bake.value_or(true)});
   reader.out.node_of_instance.resize(reader.out.scene.instances.size(), uint32_t(index));
   return {};
 }
@@ -200,45 +225,60 @@ std::vector<int> root_nodes(GltfReader& reader) {
 
 }  // namespace
 
+std::vector<Mat34> world_transforms(const tinygltf::Model& model) {
+  std::vector<bool> is_child(model.nodes.size());
+  for (const tinygltf::Node& node : model.nodes)
+    for (const int child : node.children) is_child[size_t(child)] = true;
+  std::vector<Mat34> world(model.nodes.size());
+  std::vector<size_t> stack;
+  for (size_t i = 0; i < model.nodes.size(); ++i)
+    if (!is_child[i]) stack.push_back(i), world[i] = Mat34{} * local_transform(model.nodes[i]);
+  while (!stack.empty()) {
+    const size_t parent = stack.back();
+    stack.pop_back();
+    for (const int child : model.nodes[parent].children) {
+      world[size_t(child)] = world[parent] * local_transform(model.nodes[size_t(child)]);
+      stack.push_back(size_t(child));
+    }
+  }
+  return world;
+}
+
 Status read_nodes(GltfReader& reader) {
   struct Visit {
     int node;
-    Mat34 parent;
     LightmapExtras inherited{};
   };
   // A stack of our own: a chain of nodes may be longer than the program's. Children are pushed last
   // first, so that instances come in the order of the file.
   std::vector<Visit> stack;
-  const auto push = [&](const std::vector<int>& nodes, const Mat34& parent,
-                        const LightmapExtras& inherited) {
-    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it)
-      stack.push_back({*it, parent, inherited});
+  const auto push = [&](const std::vector<int>& nodes, const LightmapExtras& inherited) {
+    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) stack.push_back({*it, inherited});
   };
   // Extras of meshes are read once: nodes may share them.
   std::vector<LightmapExtras> of_mesh;
   for (size_t m = 0; m < reader.model.meshes.size(); ++m)
     of_mesh.push_back(lightmap_extras(reader, reader.model.meshes[m].extras,
                                       label("mesh", m, reader.model.meshes[m].name)));
-  push(root_nodes(reader), {}, {});
-  bool skins = false;
+  KnownPoses known;
+  push(root_nodes(reader), {});
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
-    const tinygltf::Node& node = reader.model.nodes[size_t(visit.node)];
-    const Mat34 world = visit.parent * local_transform(node);
+    const auto number = size_t(visit.node);
+    const tinygltf::Node& node = reader.model.nodes[number];
     const LightmapExtras own =
-        lightmap_extras(reader, node.extras, label("node", size_t(visit.node), node.name));
+        lightmap_extras(reader, node.extras, label("node", number, node.name));
     const LightmapExtras inherited = first_of(own, visit.inherited);
     LUXEL_TRY_STATUS(add_instances(
-        reader, size_t(visit.node), world,
+        reader, number,
         node.mesh < 0 ? inherited
-                      : first_of(first_of(own, of_mesh[size_t(node.mesh)]), visit.inherited)));
-    add_light(reader, size_t(visit.node), world);
-    add_camera(reader, node, world);
-    skins |= node.skin >= 0;
-    push(node.children, world, inherited);
+                      : first_of(first_of(own, of_mesh[size_t(node.mesh)]), visit.inherited),
+        known));
+    add_light(reader, number, reader.world[number]);
+    add_camera(reader, node, reader.world[number]);
+    push(node.children, inherited);
   }
-  if (skins) reader.warn("it has skinned meshes; they stay in their rest pose");
   return {};
 }
 

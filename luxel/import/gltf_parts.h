@@ -19,6 +19,7 @@ struct GltfReader {
   const tinygltf::Model& model;
   const SourceFile& source;
   Imported& out;
+  std::vector<Mat34> world{};                ///< world from node, of every node
   uint32_t default_material = scene::kNone;  ///< made when a primitive first needs it
 
   template <class... Args>
@@ -30,8 +31,16 @@ struct GltfReader {
 /// Fills scene.materials and the textures they use. Errors: a texture that is missing or corrupt.
 Status read_materials(GltfReader& reader);
 
-/// One scene::Mesh per glTF mesh: its primitives merged. Errors: indices beyond the vertices.
+/// World from node, of every node of the document.
+std::vector<Mat34> world_transforms(const tinygltf::Model& model);
+
+/// One scene::Mesh per glTF mesh, its primitives merged; one without triangles where each node that
+/// draws it has a pose of its own. Errors: indices beyond the vertices; those of the pose.
 Status read_meshes(GltfReader& reader);
+
+/// Appends the mesh that a node draws, in the node's own pose. Errors: those of read_meshes();
+/// memory.
+Result<scene::Mesh> posed_mesh(GltfReader& reader, size_t node);
 
 /// Instances, lights and cameras of the default scene's nodes.
 Status read_nodes(GltfReader& reader);

@@ -305,5 +305,17 @@ TEST_F(SaveScene, AFileThatHasChangedIsNotSaved) {
   EXPECT_THAT(saved.error().message, HasSubstr("hall.gltf has changed since it was read"));
 }
 
+TEST_F(SaveScene, WhatHangsOnJointsIsNotMoved) {
+  open_hall();  // for its bytes
+  std::string skinned = kHall;
+  skinned.replace(skinned.find("\"cup\","), 6, "\"cup\", \"skin\": 0,");
+  skinned.replace(skinned.find("\"scene\": 0"), 10, "\"skins\": [{\"joints\": [2]}], \"scene\": 0");
+  EditDesk desk = open("skinned.gltf", std::as_bytes(std::span(skinned)));
+  do_edit(InstanceMoved{1, translation({1, 0, 0})}, desk);
+  const auto saved = save_scene({desk.read, desk.now, settings_});
+  ASSERT_FALSE(saved);
+  EXPECT_THAT(saved.error().message, HasSubstr("node 1 (cup) hangs on its joints"));
+}
+
 }  // namespace
 }  // namespace luxel::view

@@ -19,7 +19,8 @@ packages=(
   libtinygltf-dev nlohmann-json3-dev # glTF, JSON
   libdraco-dev libmeshoptimizer-dev  # compressed glTF
   libjpeg-dev libwebp-dev            # JPEG and WebP textures
-  libassimp-dev                      # OBJ, FBX, Collada, ...
+  libtinyobjloader-dev               # OBJ
+  libassimp-dev                      # FBX, Collada, ...
   libeigen3-dev                      # least squares
   libcgal-dev                        # exact predicates
   zlib1g-dev                         # checksums, PNG

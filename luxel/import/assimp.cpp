@@ -1,4 +1,5 @@
-// Every format but glTF, through Assimp. Its convention: Y up, right-handed, v grows upwards.
+// Every format but glTF and OBJ, through Assimp. Its convention: Y up, right-handed, v grows
+// upwards.
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -11,9 +12,7 @@
 #include "luxel/image/color.h"
 #include "luxel/import/assimp_files.h"
 #include "luxel/import/assimp_parts.h"
-#include "luxel/import/mtl_text.h"
 #include "luxel/import/nesting.h"
-#include "luxel/import/obj_groups.h"
 #include "luxel/import/ply.h"
 
 namespace Assimp {
@@ -79,8 +78,7 @@ void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bo
   }
 }
 
-/// Assimp splits a surface by material; the parts that one node draws belong together (the `o` or
-/// `g` group of an .obj).
+/// Assimp splits a surface by material; the parts that one node draws belong together.
 scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, bool srgb_colors) {
   Wanted wanted;
   for (const unsigned p : parts) {
@@ -125,24 +123,6 @@ std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_fi
   return drawn;
 }
 
-/// Gives the groups of an .obj their names back. A group that is opened again became another node
-/// of the same number, and is the same group.
-void join_groups(const ObjGroups& groups, std::vector<DrawnNode>& drawn) {
-  std::map<std::string, size_t> first;
-  std::vector<DrawnNode> joined;
-  for (DrawnNode& node : drawn) {
-    const auto [at, is_new] = first.try_emplace(node.name, joined.size());
-    if (is_new) {
-      node.name = name_of_group(groups, node.name);
-      joined.push_back(std::move(node));
-      continue;
-    }
-    std::vector<unsigned>& parts = joined[at->second].parts;
-    parts.insert(parts.end(), node.parts.begin(), node.parts.end());
-  }
-  drawn = std::move(joined);
-}
-
 /// Nodes that draw the same parts share one mesh.
 void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool srgb_colors,
                    scene::Scene& out) {
@@ -180,13 +160,8 @@ Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFi
   return importer.ApplyPostProcessing(aiProcess_SortByPType);
 }
 
-/// What an .obj names in the place of its own material libraries.
-constexpr const char* kMaterialFile = "luxel-materials.mtl";
-
 /// What Assimp gets in the place of a file that its reader could misread.
 struct Rewritten {
-  ObjGroups obj;
-  MtlText obj_materials;  ///< of all its libraries
   PlainPly ply;
   std::optional<std::string> x;
 };
@@ -196,10 +171,7 @@ Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& wa
   Rewritten out;
   LUXEL_TRY_STATUS(check_nesting(source));
   LUXEL_TRY_STATUS(check_packed(source));
-  if (source.extension == ".obj") {
-    LUXEL_TRY(out.obj_materials, check_obj(source, warnings));
-    out.obj = number_groups(source);
-  } else if (source.extension == ".ply") {
+  if (source.extension == ".ply") {
     LUXEL_TRY(out.ply, write_plain_ply(source, warnings));
   } else if (source.extension == ".x") {
     LUXEL_TRY(out.x, write_plain_x(source));
@@ -211,17 +183,10 @@ Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& wa
   return out;
 }
 
-/// An .obj gets the materials of its libraries as one beside it, and no other file.
 FilesForAssimp* files_for_assimp(const SourceFile& source, const Rewritten& rewritten) {
   auto* files = new FilesForAssimp(source);
   if (source.extension == ".ply") files->replace(source.path, rewritten.ply.text);
   if (rewritten.x) files->replace(source.path, *rewritten.x);
-  if (source.extension != ".obj") return files;
-  files->allow_no_others();
-  const std::string& materials = rewritten.obj_materials.text;
-  files->replace(source.path, (materials.empty() ? "" : fmt::format("mtllib {}\n", kMaterialFile)) +
-                                  rewritten.obj.text);
-  if (!materials.empty()) files->replace(source.path.parent_path() / kMaterialFile, materials);
   return files;
 }
 
@@ -257,8 +222,6 @@ Status check_extension(const SourceFile& source) {
 Result<Imported> read_with_assimp(const SourceFile& source) {
   Imported imported;
   LUXEL_TRY(const Rewritten rewritten, rewrite(source, imported.warnings));
-  const bool is_obj = source.extension == ".obj";
-
   Assimp::Importer importer;
   importer.SetIOHandler(files_for_assimp(source, rewritten));  // which deletes it
   // Points and lines are sorted out into meshes of their own and dropped.
@@ -269,18 +232,13 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(importer.GetErrorString()));
 
-  LUXEL_TRY_STATUS(
-      read_assimp_materials(*in, source, rewritten.obj_materials.with_color, imported));
+  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, imported));
   NodeTransforms transforms;
-  std::vector<DrawnNode> drawn =
+  const std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
-  if (is_obj) join_groups(rewritten.obj, drawn);
   add_instances(*in, drawn, rewritten.ply.has_display_colors, imported.scene);
   add_assimp_lights(*in, source, transforms, imported);
   add_assimp_cameras(*in, source, transforms, imported.scene);
-  if (is_obj)
-    imported.about_lost_lights =
-        "an .obj file can hold no lights except emissive materials (Ke in its .mtl)";
   if (source.extension == ".ply" || source.extension == ".stl")
     imported.about_lost_lights = fmt::format("{} files cannot hold lights", source.extension);
   return imported;

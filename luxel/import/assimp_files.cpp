@@ -31,7 +31,7 @@ std::string FilesForAssimp::stated(const char* file) const {
 
 bool FilesForAssimp::Exists(const char* file) const {
   if (source_.path == file || texts_.contains(file)) return true;
-  return others_ && find_named_file(source_.files, stated(file), source_.name).has_value();
+  return find_named_file(source_.files, stated(file), source_.name).has_value();
 }
 
 Assimp::IOStream* FilesForAssimp::Open(const char* file, const char* mode) {
@@ -41,7 +41,6 @@ Assimp::IOStream* FilesForAssimp::Open(const char* file, const char* mode) {
   };
   if (const auto text = texts_.find(file); text != texts_.end()) return stream_over(text->second);
   if (source_.path == file) return stream_over(source_.bytes);
-  if (!others_) return nullptr;
   const auto bytes = read_named_file(source_.files, stated(file), source_.name, source_.memory);
   if (!bytes) return nullptr;
   auto* copy = new uint8_t[bytes->size()];

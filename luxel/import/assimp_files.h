@@ -23,8 +23,6 @@ class FilesForAssimp : public Assimp::IOSystem {
   void replace(const std::filesystem::path& path, std::string text) {
     texts_[path.string()] = std::move(text);
   }
-  /// Files that are neither the scene's own nor a text of ours are not there.
-  void allow_no_others() { others_ = false; }
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
@@ -38,7 +36,6 @@ class FilesForAssimp : public Assimp::IOSystem {
   const SourceFile& source_;
   std::map<std::string, std::string> texts_;
   std::set<Assimp::IOStream*> open_;  ///< some of Assimp's readers delete theirs without Close()
-  bool others_ = true;
 };
 
 }  // namespace luxel::import

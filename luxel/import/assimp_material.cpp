@@ -15,7 +15,6 @@ using scene::TextureRef;
 struct Textures {
   const aiScene& in;
   const SourceFile& source;
-  const std::set<std::string>& with_color;
   Imported& out;
   std::map<std::string, uint32_t> known;  ///< by the path in the file
 };
@@ -86,11 +85,10 @@ Rgb color_of(const aiMaterial& in, const char* key, unsigned type, unsigned inde
 }
 
 /// Assimp states a specular colour for Lambertian materials too, and makes up grey for Collada's.
-/// An .mtl often has Ks without the `illum` that would ask for it, and Assimp adds none.
-bool has_highlight(const aiMaterial& in, const SourceFile& source) {
+bool has_highlight(const aiMaterial& in) {
   int model = aiShadingMode_Gouraud;
   in.Get(AI_MATKEY_SHADING_MODEL, model);
-  return source.extension == ".obj" || model == aiShadingMode_Phong || model == aiShadingMode_Blinn;
+  return model == aiShadingMode_Phong || model == aiShadingMode_Blinn;
 }
 
 Result<scene::Material> read_material(Textures& textures, unsigned index) {
@@ -106,7 +104,7 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   out.base_color = color_of(in, AI_MATKEY_COLOR_DIFFUSE, out.base_color);
   out.base_color = color_of(in, AI_MATKEY_BASE_COLOR, out.base_color);
   out.emission = color_of(in, AI_MATKEY_COLOR_EMISSIVE, {});
-  if (has_highlight(in, textures.source)) {
+  if (has_highlight(in)) {
     float factor = 1;  // FBX's SpecularFactor, which Assimp leaves to us, unlike the others
     in.Get(AI_MATKEY_SHININESS_STRENGTH, factor);
     out.specular = color_of(in, AI_MATKEY_COLOR_SPECULAR, out.specular) * factor;
@@ -124,24 +122,16 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
     LUXEL_TRY(out.base_color_texture, read_ref(textures, in, aiTextureType_BASE_COLOR, user));
   }
   LUXEL_TRY(out.emission_texture, read_ref(textures, in, aiTextureType_EMISSIVE, user));
-  // An .mtl with map_Ke and no Ke means the picture as it is.
+  // A picture alone means the picture as it is.
   if (out.emission_texture.texture != scene::kNone && max_component(out.emission) <= 0)
     out.emission = {1, 1, 1};
-  // Assimp's own grey of 0.6 says that the .mtl is missing or has no Kd.
-  const bool made_up = textures.source.extension == ".obj" &&
-                       !textures.with_color.contains(out.name) &&
-                       out.base_color == Rgb{0.6f, 0.6f, 0.6f};
-  if (made_up)
-    out.base_color = out.base_color_texture.texture == scene::kNone ? default_material().base_color
-                                                                    : Rgb{1, 1, 1};
   return out;
 }
 
 }  // namespace
 
-Status read_assimp_materials(const aiScene& in, const SourceFile& source,
-                             const std::set<std::string>& with_color, Imported& out) {
-  Textures textures{in, source, with_color, out, {}};
+Status read_assimp_materials(const aiScene& in, const SourceFile& source, Imported& out) {
+  Textures textures{in, source, out, {}};
   for (unsigned i = 0; i < in.mNumMaterials; ++i) {
     LUXEL_TRY(scene::Material material, read_material(textures, i));
     out.scene.materials.push_back(std::move(material));

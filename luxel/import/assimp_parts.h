@@ -4,17 +4,14 @@
 #include <assimp/scene.h>
 
 #include <map>
-#include <set>
 
 #include "luxel/import/readers.h"
 
 namespace luxel::import {
 
 /// Fills scene.materials, in Assimp's order, and the textures they use. Errors: a texture that is
-/// missing or corrupt. `with_color`, for .obj only: the materials that state Kd, since Assimp makes
-/// up 0.6 for the others.
-Status read_assimp_materials(const aiScene& in, const SourceFile& source,
-                             const std::set<std::string>& with_color, Imported& out);
+/// missing or corrupt.
+Status read_assimp_materials(const aiScene& in, const SourceFile& source, Imported& out);
 
 inline Vec3 vec3_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 inline Mat34 mat34_of(const aiMatrix4x4& m) {

@@ -94,11 +94,6 @@ struct FbxWords {
   }
 };
 
-std::string_view without_quotes(std::string_view word) {
-  if (word.size() >= 2 && word.front() == '"') return word.substr(1, word.size() - 2);
-  return word;
-}
-
 uint64_t id_in_text(std::string_view word) {
   uint64_t id = UINT64_MAX;
   std::from_chars(word.data(), word.data() + word.size(), id);

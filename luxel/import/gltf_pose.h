@@ -21,14 +21,14 @@ struct Vertices {
   std::vector<bool> mirrored;  ///< triangles that begin here turn round; empty: none
 };
 
-/// What a node makes of the mesh that it draws.
+/// A mesh as one node draws it.
 struct Pose {
   std::vector<double> weights;  ///< of the morph targets; others have 0
   std::vector<Mat34> joints;    ///< world from mesh, of each joint of the skin; empty: no skin
   Mat34 world;                  ///< of the node; with a skin, where vertices of no joint go
 };
 
-/// Whether a node's pose is another than that of its mesh alone.
+/// True where a node's pose is another than that of its mesh alone.
 bool has_own_pose(const tinygltf::Model& model, const tinygltf::Node& node);
 
 /// The pose of a node that draws a mesh. Errors: too few inverse bind matrices.

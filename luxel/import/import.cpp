@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <nlohmann/json.hpp>
 
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
@@ -16,16 +17,18 @@ namespace {
 
 Result<Imported> read_scene(const SourceFile& source) {
   if (source.extension == ".gltf" || source.extension == ".glb") return read_gltf(source);
+  if (source.extension == ".obj") return read_obj(source);
   return read_with_assimp(source);
 }
 
 /// Whether an .obj file has smoothing groups, and all of them are off: `s off`, `s 0`.
 bool asks_for_facets(const SourceFile& source) {
   bool off = false;
-  for (std::string_view text = text_of(source.bytes); !text.empty();) {
-    std::string_view line = next_line(text);
-    if (next_word(line) != "s") continue;
-    const std::string_view group = next_word(line);
+  std::string_view text = text_of(source.bytes);
+  for (ObjLine line; next_obj_line(text, line);) {
+    std::string_view rest = line.text;
+    if (next_word(rest) != "s") continue;
+    const std::string_view group = next_word(rest);
     off = group == "off" || group == "0";
     if (!off) return false;
   }
@@ -54,6 +57,26 @@ void keep_nodes(std::span<const scene::Instance> read, Imported& imported) {
   imported.node_of_instance = std::move(out);
 }
 
+/// Bytes that are no UTF-8, as old programs write them, become the replacement character: names end
+/// up in JSON, which has no others.
+void make_utf8(std::string& text) {
+  using nlohmann::json;
+  if (std::all_of(text.begin(), text.end(), [](char c) { return uint8_t(c) < 0x80; })) return;
+  const std::string said = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+  text = json::parse(said).get<std::string>();
+}
+
+void make_names_utf8(Imported& imported) {
+  scene::Scene& scene = imported.scene;
+  make_utf8(scene.name);
+  for (std::string& warning : imported.warnings) make_utf8(warning);
+  const auto all = [](auto& things) {
+    for (auto& thing : things) make_utf8(thing.name);
+  };
+  all(scene.meshes), all(scene.instances), all(scene.materials), all(scene.textures);
+  all(scene.lights), all(scene.cameras);
+}
+
 Result<Imported> read_checked(const SourceFile& source, const ImportParams& params) {
   LUXEL_TRY_STATUS(check_extension(source));
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
@@ -61,6 +84,7 @@ Result<Imported> read_checked(const SourceFile& source, const ImportParams& para
   try {
     LUXEL_TRY(Imported imported, read_scene(source));
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
+    make_names_utf8(imported);
     const std::vector<scene::Instance> read = imported.scene.instances;
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     keep_nodes(read, imported);

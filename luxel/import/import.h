@@ -35,10 +35,10 @@ struct ImportParams {
 };
 inline constexpr float kUsualCreaseDeg = 30;
 
-/// Reads .gltf and .glb with tinygltf, everything else that Assimp knows (.obj, .x, .fbx, .dae,
-/// .ply, ...) through Assimp. Errors say file, field, value and what to do. out_of_memory: what the
-/// file holds needs more than `max_memory_bytes`, which the process may have while it reads (0:
-/// what the machine has free); it is said before it is used.
+/// Reads .gltf and .glb with tinygltf, .obj with tinyobjloader, everything else that Assimp knows
+/// (.x, .fbx, .dae, .ply, ...) through Assimp. Errors say file, field, value and what to do.
+/// out_of_memory: what the file holds needs more than `max_memory_bytes`, which the process may
+/// have while it reads (0: what the machine has free); it is said before it is used.
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params = {},
                               uint64_t max_memory_bytes = 0);
 

@@ -37,6 +37,15 @@ DVec3 normal_of(std::span<const DVec3> corners) {
   return sum;
 }
 
+/// True where any triangle of the fan from the first corner has area.
+bool has_area(std::span<const DVec3> corners) {
+  for (size_t k = 1; k + 1 < corners.size(); ++k) {
+    const DVec3 n = cross(corners[k] - corners[0], corners[k + 1] - corners[0]);
+    if (n != DVec3{}) return true;
+  }
+  return false;
+}
+
 /// The corners without the coordinate along which the normal is longest: no other is rounded, so
 /// the predicates decide exactly.
 std::vector<DVec2> flattened(std::span<const DVec3> corners, DVec3 normal) {
@@ -101,8 +110,8 @@ Ear ear_of(DVec2 a, DVec2 b, DVec2 c) {
           {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}};
 }
 
-/// Whether the edge from q to r meets the inside of the ear. It does not where a line parts them:
-/// one along a side of the ear, or the edge's own (the separating axes of two convex shapes).
+/// True where the edge from q to r meets the inside of the ear. It does not where a line parts
+/// them: one along a side of the ear, or the edge's own (the separating axes of two convex shapes).
 bool meets(const Ear& ear, DVec2 q, DVec2 r) {
   if (std::max(q.x, r.x) <= ear.lower.x || std::min(q.x, r.x) >= ear.upper.x ||
       std::max(q.y, r.y) <= ear.lower.y || std::min(q.y, r.y) >= ear.upper.y)
@@ -116,8 +125,8 @@ bool meets(const Ear& ear, DVec2 q, DVec2 r) {
   return std::min({a, b, c}) < 0 && std::max({a, b, c}) > 0;
 }
 
-/// Whether corner q keeps the ear from being cut off: it lies inside, or on the border with an edge
-/// that goes inside, or, for a clean cut, on the new edge.
+/// True where corner q keeps the ear from being cut off: it lies inside, or on the border with an
+/// edge that goes inside, or, for a clean cut, on the new edge.
 bool blocks(const Outline& outline, uint32_t q, const Ear& ear, Cut cut) {
   const DVec2 p = outline.at[q];
   if (p.x < ear.lower.x || p.x > ear.upper.x || p.y < ear.lower.y || p.y > ear.upper.y)
@@ -163,7 +172,8 @@ bool can_be_cut(const Outline& outline, const Cells& cells, uint32_t corner, Cut
   return !any_blocks(outline, cells, ear, {from, corner, to}, cut);
 }
 
-/// Whether the outline turns back at a corner, or two corners are one: no area is lost without it.
+/// True where the outline turns back at a corner, or two corners are one: no area is lost without
+/// it.
 bool is_spike(const Outline& outline, uint32_t corner) {
   const DVec2 a = outline.at[outline.prev[corner]], b = outline.at[corner],
               c = outline.at[outline.next[corner]];
@@ -234,9 +244,10 @@ bool triangulate(std::span<const DVec3> corners, std::vector<std::array<uint32_t
     for (uint32_t k = 1; k + 1 < corners.size(); ++k) out.push_back({0, k, k + 1});
   };
   const DVec3 normal = normal_of(corners);
-  // Without area, or not finite: checks of the whole scene deal with its triangles.
-  if (corners.size() == 3 || !(dot(normal, normal) > 0) || !std::isfinite(dot(normal, normal)))
-    return fan(), true;
+  const double squared = dot(normal, normal);
+  // Not finite: checks of the whole scene deal with its triangles.
+  if (corners.size() == 3 || !std::isfinite(squared)) return fan(), true;
+  if (squared == 0) return fan(), !has_area(corners);
   Outline outline = outline_of(flattened(corners, normal));
   if (is_convex_quad(outline)) return fan(), true;
   double whole = 0, sum = 0;

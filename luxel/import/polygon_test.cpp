@@ -184,6 +184,7 @@ TEST(Triangulate, AnOutlineThatCrossesItselfIsSaidAndSplitFromItsFirstCorner) {
   Triangles triangles;
   EXPECT_FALSE(triangulate(flat({{0, 0}, {4, 3}, {4, 0}, {0, 2}}), triangles));
   EXPECT_EQ(triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_FALSE(triangulate(flat({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), triangles)) << "no area in sum";
 }
 
 TEST(Triangulate, WithoutAreaOrNotFiniteIsAFanForTheSceneToCheck) {
@@ -264,11 +265,15 @@ TEST(Triangulate, APolygonHasItsAreaInEveryFormat) {
 }
 
 TEST(Triangulate, AFileIsToldOfPolygonsThatCrossThemselves) {
-  const auto imported = import_text("a.obj", "v 0 0 0\nv 4 3 0\nv 4 0 0\nv 0 2 0\nf 1 2 3 4\n");
+  const auto imported = import_text(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n4 3 0\n4 0 0\n0 2 0\n4 0 1 2 3\n");
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_THAT(
       all_of(imported->warnings),
-      HasSubstr("a.obj: polygons whose outline crosses itself: 1; their area is not right"));
+      HasSubstr("a.ply: polygons whose outline crosses itself: 1; their area is not right"));
 }
 
 }  // namespace

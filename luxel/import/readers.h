@@ -28,13 +28,11 @@ struct SourceFile {
 Status check_extension(const SourceFile& source);
 
 Result<Imported> read_gltf(const SourceFile& source);
+Result<Imported> read_obj(const SourceFile& source);
 Result<Imported> read_with_assimp(const SourceFile& source);
 
 /// Assimp's readers trust their input, and Debian's build aborts where an assertion fails: what can
 /// be told cheaply is told before. Errors: NaN, index out of range, a file that ends early.
-/// check_obj() returns the file's materials (mtl_text.h); a missing .mtl is a warning.
-struct MtlText;
-Result<MtlText> check_obj(const SourceFile& source, std::vector<std::string>& warnings);
 /// The text of a .x file of the same surfaces; none for a binary or packed one, or what is no .x.
 /// Errors: those of checks; memory.
 Result<std::optional<std::string>> write_plain_x(const SourceFile& source);

@@ -54,12 +54,52 @@ inline std::string_view trimmed(std::string_view rest) {
   return rest.substr(start, std::max(rest.find_last_not_of(kBlank) + 1, start) - start);
 }
 
+/// `usemtl "oak"` means oak.
+inline std::string_view without_quotes(std::string_view name) {
+  const bool quoted = name.size() > 1 && name.front() == '"' && name.back() == '"';
+  return quoted ? name.substr(1, name.size() - 2) : name;
+}
+
 /// Takes the next line off the text.
 inline std::string_view next_line(std::string_view& text) {
   const size_t end = std::min(text.find('\n'), text.size());
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return line;
+}
+
+/// A line of an .obj or .mtl file, and its number from 1 on.
+struct ObjLine {
+  std::string_view text;
+  size_t number = 0;
+  size_t lines_before = 0;  ///< read so far
+  std::string joined;       ///< of lines that go on
+};
+
+/// Takes the next line off the text; false at its end. Lines end with \n, \r\n or \r. One that ends
+/// with a backslash goes on in the next, but for a comment: that may end with the name of a folder.
+inline bool next_obj_line(std::string_view& text, ObjLine& line) {
+  const auto take = [&] {
+    const size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::string_view taken = text.substr(0, end);
+    text.remove_prefix(std::min(end + (text.substr(end, 2) == "\r\n" ? 2 : 1), text.size()));
+    ++line.lines_before;
+    return taken;
+  };
+  if (line.lines_before == 0 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (text.empty()) return false;
+  line.text = take();
+  line.number = line.lines_before;
+  const bool is_comment = trimmed(line.text).starts_with('#');
+  if (is_comment || !trimmed(line.text).ends_with('\\')) return true;
+  line.joined.clear();
+  for (std::string_view part = line.text;; part = take()) {
+    const bool goes_on = trimmed(part).ends_with('\\');
+    line.joined.append(part.substr(0, goes_on ? part.find_last_of('\\') : part.size())).append(" ");
+    if (!goes_on || text.empty()) break;
+  }
+  line.text = line.joined;
+  return true;
 }
 
 }  // namespace luxel::import

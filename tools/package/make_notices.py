@@ -34,6 +34,7 @@ PARTS = [
     Part("TinyGLTF", "libtinygltf-dev", ALL, "headers"),
     Part("stb", "libstb-dev", ALL, "headers"),
     Part("meshoptimizer", "libmeshoptimizer-dev", ALL, "headers"),
+    Part("tinyobjloader", "libtinyobjloader-dev", ALL, "headers"),
     Part("JSON for Modern C++", "nlohmann-json3-dev", ALL, "headers",
          ("*", "include/nlohmann/detail/conversions/to_chars.hpp", "include/nlohmann/detail/output/serializer.hpp")),
     Part("fmt", "libfmt-dev", ALL, "headers"),
@@ -53,6 +54,7 @@ PARTS = [
 # interface, or the system: nothing of it is in luxel's files.
 INCLUDED = {
     "draco": "Draco", "tiny_gltf.h": "TinyGLTF", "stb": "stb", "meshoptimizer.h": "meshoptimizer",
+    "tiny_obj_loader.h": "tinyobjloader",
     "nlohmann": "JSON for Modern C++", "fmt": "fmt", "Eigen": "Eigen", "CGAL": "CGAL",
     "tbb": "oneTBB", "OpenEXR": "OpenEXR", "Imath": "Imath", "CLI": "CLI11", "toml++": "toml++", "volk.h": "volk",
     "imgui.h": "Dear ImGui", "backends": "Dear ImGui", "pybind11": "pybind11",

@@ -53,7 +53,9 @@ Result<FinishedFiles> finished_files(const BakeSettings& settings, const Bake& b
   nlohmann::json& names = out.report["files"] = nlohmann::json::array();
   for (const OutputFile& file : out.files) names.push_back(file.path.filename().string());
   names.push_back("bake.json");
-  out.files.push_back(text_file(settings.output / "bake.json", out.report.dump(2) + "\n"));
+  out.files.push_back(
+      text_file(settings.output / "bake.json",
+                out.report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
   return out;
 }
 

@@ -1,5 +1,5 @@
-// What Assimp gets of a material library, and libraries that ended the process or the scene.
-#include "luxel/import/mtl_text.h"
+// Material libraries: what they say, and what is wrong in them.
+#include "luxel/import/mtl.h"
 
 #include <gmock/gmock.h>
 
@@ -8,48 +8,57 @@
 namespace luxel::import {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-std::string text_for_assimp(std::string_view library, std::vector<std::string>* said = nullptr) {
-  MtlText out;
-  std::vector<std::string> warnings;
-  add_library(library, "m.mtl", out, warnings);
-  if (said != nullptr) *said = warnings;
-  return out.text;
+MtlLibrary library_of(std::string_view text, std::vector<std::string>& warnings) {
+  MtlLibrary out;
+  add_library(text, "m.mtl", out, warnings);
+  return out;
 }
 
-TEST(MtlText, KeepsWhatIsUsed) {
-  EXPECT_EQ(text_for_assimp("# made by hand\nnewmtl a b\nKd 0.5 0.6 0.7\n\tks .1 0 0\r\nNs 42\n"
-                            "illum 2\nd 0.4\nKe 1\nKa 1 1 1\nNi 1.5\nbump b.png\n"
-                            "map_Kd -s 1 1 1 -clamp on -o 0.5 my brick.png\n"
-                            "map_emissive -bm 2 glow.png\n"),
-            "newmtl a b\nKd 0.5 0.6 0.7\nKs 0.1 0 0\nNs 42\nillum 2\nd 0.4\nKe 1 1 1\n"
-            "map_Kd -clamp on my brick.png\nmap_Ke glow.png\n");
-  MtlText out;
+TEST(Mtl, SaysWhatItsLinesSay) {
   std::vector<std::string> warnings;
-  add_library("newmtl a\nKd 1 1 1\nnewmtl b\nKs 1 1 1\n", "m.mtl", out, warnings);
-  EXPECT_THAT(out.with_color, ElementsAre("a"));
+  const MtlLibrary library = library_of(
+      "# made by hand\nnewmtl a b\nKd 0.5 0.6 0.7\n\tks .1 0 0\r\nNs 42\nillum 2\nd 0.4\nKe 1\n"
+      "Ka 1 1 1\nNi 1.5\nbump b.png\nmap_Kd -s 2 3 1 -clamp on -o 0.5 my brick.png\n"
+      "map_emissive -bm 2 \"glow.png\"\nnewmtl c\nTr 0.25\nPm \\\n0.5\n",
+      warnings);
   EXPECT_THAT(warnings, IsEmpty());
+  ASSERT_EQ(library.size(), 2u);
+  const MtlMaterial& a = library.at("a b");
+  EXPECT_EQ(a.color, (Rgb{0.5f, 0.6f, 0.7f}));
+  EXPECT_EQ(a.specular, (Rgb{0.1f, 0, 0}));
+  EXPECT_EQ(a.sharpness, 42);
+  EXPECT_EQ(a.alpha, 0.4f);
+  EXPECT_EQ(a.emission, (Rgb{1, 1, 1}));
+  EXPECT_EQ(a.color_picture.name, "my brick.png");
+  EXPECT_TRUE(a.color_picture.clamp);
+  EXPECT_EQ(a.color_picture.scale.y, 3);
+  EXPECT_EQ(a.color_picture.offset.x, 0.5f);
+  EXPECT_EQ(a.emission_picture.name, "glow.png");
+  const MtlMaterial& c = library.at("c");
+  EXPECT_FALSE(c.color);
+  EXPECT_EQ(c.alpha, 0.75f);
+  EXPECT_EQ(c.metallic, 0.5f);
 }
 
-TEST(MtlText, LeavesOutWhatIsWrongAndSaysWhere) {
-  std::vector<std::string> said;
-  EXPECT_EQ(text_for_assimp("\nmap_Kd brick.png\nKd 1 1 1\nnewmtl a\nKd x 1 1\nKd nan 0 0\nd\n"
-                            "Ns 1e999\nKe 1 2\nillum -7\nmap_Kd\nKs 0.1 0.1 0.1\n",
-                            &said),
-            "newmtl a\nKs 0.1 0.1 0.1\n");
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0],
-            "m.mtl: 9 lines are left out, the first in line 2: they have no material above or no "
+TEST(Mtl, LeavesOutWhatIsWrongAndSaysWhere) {
+  std::vector<std::string> warnings;
+  const MtlLibrary library = library_of(
+      "\nmap_Kd brick.png\nKd 1 1 1\nnewmtl a\nKd x 1 1\nKd nan 0 0\nd\nNs 1e999\nKe 1 2\n"
+      "map_Kd\nKs 0.1 0.1 0.1\n",
+      warnings);
+  EXPECT_FALSE(library.at("a").color);
+  EXPECT_EQ(library.at("a").specular, (Rgb{0.1f, 0.1f, 0.1f}));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0],
+            "m.mtl: 8 lines are left out, the first in line 2: they have no material above or no "
             "usable value");
 }
 
 constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
 
-// The first ended the process in Assimp, the others the scene.
-TEST(MtlText, NoLibraryEndsTheScene) {
+TEST(Mtl, NoLibraryEndsTheScene) {
   const TemporaryFolder folder;
   const auto scene = folder.write("a.obj", std::string("mtllib m.mtl\n") + kTriangle);
   for (const std::string& text :
@@ -65,7 +74,7 @@ TEST(MtlText, NoLibraryEndsTheScene) {
   }
 }
 
-TEST(MtlText, OneLineMayNameSeveralLibraries) {
+TEST(Mtl, OneLineMayNameSeveralLibraries) {
   const TemporaryFolder folder;
   folder.write("a.mtl", "newmtl a\nKd 0.25 0.25 0.25\n");
   folder.write("b.mtl", "newmtl b\nKd 0.5 0.5 0.5\n");

@@ -11,20 +11,15 @@ namespace {
 /// A face with its indices, and an array of them, as Assimp allocates them.
 constexpr uint64_t kFaceBytes = sizeof(aiFace) + 32;
 
-struct Counted {
-  size_t faces = 0;           ///< once all polygons are triangles
-  bool has_polygons = false;  ///< of more than three corners
-};
-
-Result<Counted> count_faces(const aiMesh& mesh, size_t number, const SourceFile& source) {
-  Counted out;
+/// Faces once all polygons are triangles: more than there are now if any has over three corners.
+Result<size_t> count_faces(const aiMesh& mesh, size_t number, const SourceFile& source) {
+  size_t out = 0;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const unsigned corners = mesh.mFaces[f].mNumIndices;
     if (corners > kMostCorners)
       return fail(ErrorCode::bad_input, "{}: a face of {} has {} corners, more than {}; divide it",
                   source.name, label("mesh", number, mesh.mName.C_Str()), corners, kMostCorners);
-    out.faces += corners > 3 ? corners - 2 : 1;
-    out.has_polygons |= corners > 3;
+    out += corners > 3 ? corners - 2 : 1;
   }
   return out;
 }
@@ -70,11 +65,10 @@ Status split_polygons(aiScene& scene, const SourceFile& source,
   size_t crossing = 0;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     aiMesh& mesh = *scene.mMeshes[m];
-    LUXEL_TRY(const Counted counted, count_faces(mesh, m, source));
-    if (!counted.has_polygons) continue;
-    LUXEL_TRY_STATUS(
-        source.memory.take(kFaceBytes * counted.faces, "the triangles of " + source.name));
-    crossing += split(mesh, counted.faces);
+    LUXEL_TRY(const size_t faces, count_faces(mesh, m, source));
+    if (faces == mesh.mNumFaces) continue;
+    LUXEL_TRY_STATUS(source.memory.take(kFaceBytes * faces, "the triangles of " + source.name));
+    crossing += split(mesh, faces);
   }
   if (crossing > 0)
     warnings.push_back(fmt::format(

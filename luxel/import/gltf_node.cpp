@@ -209,16 +209,22 @@ Status add_instances(GltfReader& reader, size_t index, const LightmapExtras& lig
   return {};
 }
 
+/// The nodes that are no other's child.
+std::vector<int> top_nodes(const tinygltf::Model& model) {
+  std::vector<bool> is_child(model.nodes.size());
+  for (const tinygltf::Node& node : model.nodes)
+    for (const int child : node.children) is_child[size_t(child)] = true;
+  std::vector<int> top;
+  for (size_t i = 0; i < model.nodes.size(); ++i)
+    if (!is_child[i]) top.push_back(int(i));
+  return top;
+}
+
 /// The nodes to start from: those of the default scene, of the first one, or all roots.
 std::vector<int> root_nodes(GltfReader& reader) {
   const tinygltf::Model& model = reader.model;
   if (!model.scenes.empty()) return model.scenes[size_t(std::max(model.defaultScene, 0))].nodes;
-  std::vector<bool> is_child(model.nodes.size());
-  for (const tinygltf::Node& node : model.nodes)
-    for (const int child : node.children) is_child[size_t(child)] = true;
-  std::vector<int> roots;
-  for (size_t i = 0; i < model.nodes.size(); ++i)
-    if (!is_child[i]) roots.push_back(int(i));
+  std::vector<int> roots = top_nodes(model);
   if (!roots.empty()) reader.warn("it has no scene; all its nodes are used");
   return roots;
 }
@@ -226,19 +232,16 @@ std::vector<int> root_nodes(GltfReader& reader) {
 }  // namespace
 
 std::vector<Mat34> world_transforms(const tinygltf::Model& model) {
-  std::vector<bool> is_child(model.nodes.size());
-  for (const tinygltf::Node& node : model.nodes)
-    for (const int child : node.children) is_child[size_t(child)] = true;
   std::vector<Mat34> world(model.nodes.size());
-  std::vector<size_t> stack;
-  for (size_t i = 0; i < model.nodes.size(); ++i)
-    if (!is_child[i]) stack.push_back(i), world[i] = Mat34{} * local_transform(model.nodes[i]);
+  std::vector<int> stack = top_nodes(model);
+  for (const int top : stack)
+    world[size_t(top)] = Mat34{} * local_transform(model.nodes[size_t(top)]);
   while (!stack.empty()) {
-    const size_t parent = stack.back();
+    const auto parent = size_t(stack.back());
     stack.pop_back();
     for (const int child : model.nodes[parent].children) {
       world[size_t(child)] = world[parent] * local_transform(model.nodes[size_t(child)]);
-      stack.push_back(size_t(child));
+      stack.push_back(child);
     }
   }
   return world;

@@ -28,8 +28,11 @@ Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view nam
   if (is_webp(bytes)) return decode_webp(bytes, name, allow);
   if (is_jpeg(bytes)) return decode_jpeg(bytes, name, allow);
   if (is_png(bytes)) return decode_png(bytes, name, allow);
-  return fail(ErrorCode::bad_input,
-              "{}: the picture is neither PNG, JPEG nor WebP; convert it to one of them", name);
+  if (is_bmp(bytes)) return decode_bmp(bytes, name, allow);
+  if (is_tga(bytes)) return decode_tga(bytes, name, allow);
+  return fail(ErrorCode::unsupported,
+              "{}: the picture is none of PNG, JPEG, WebP, BMP and TGA; convert it to one of them",
+              name);
 }
 
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name) {

@@ -22,6 +22,16 @@ bool is_webp(std::span<const std::byte> bytes);
 Result<Image8> decode_webp(std::span<const std::byte> bytes, std::string_view name,
                            const AllowSize& allow);
 
+bool is_bmp(std::span<const std::byte> bytes);
+/// Also refused (unsupported): packed by runs.
+Result<Image8> decode_bmp(std::span<const std::byte> bytes, std::string_view name,
+                          const AllowSize& allow);
+
+/// TGA has no mark of its own: ask for the others first.
+bool is_tga(std::span<const std::byte> bytes);
+Result<Image8> decode_tga(std::span<const std::byte> bytes, std::string_view name,
+                          const AllowSize& allow);
+
 /// An error for a side of no pixels or of too many: a header that lies would cost gigabytes.
 Status check_picture_size(uint32_t width, uint32_t height, std::string_view name);
 

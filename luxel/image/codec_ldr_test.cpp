@@ -80,7 +80,7 @@ TEST(DecodeLdr, FlippedBitsAreSeen) {
 
 TEST(DecodeLdr, TooLargeOtherFormatsAndNothing) {
   EXPECT_THAT(decoded_ldr("GIF89a").error().message,
-              HasSubstr("pic: the picture is neither PNG, JPEG nor WebP"));
+              HasSubstr("pic: the picture is none of PNG, JPEG, WebP, BMP and TGA"));
   EXPECT_THAT(decoded_ldr("").error().message, HasSubstr("empty"));
   const std::vector<uint8_t> row(16385);
   std::string wide;

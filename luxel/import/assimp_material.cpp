@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
 
 #include "luxel/import/assimp_parts.h"
+#include "luxel/import/pictures.h"
 
 namespace luxel::import {
 namespace {
@@ -14,9 +14,7 @@ using scene::TextureRef;
 
 struct Textures {
   const aiScene& in;
-  const SourceFile& source;
-  Imported& out;
-  std::map<std::string, uint32_t> known;  ///< by the path in the file
+  Pictures pictures;
 };
 
 /// Uncompressed: mWidth x mHeight texels in the order b, g, r, a.
@@ -34,20 +32,14 @@ scene::Texture raw_texture(const aiTexture& in, const std::string& name) {
 
 Result<scene::Texture> load_texture(const Textures& textures, const std::string& path,
                                     const std::string& user) {
-  const std::string name = textures.source.name + ": " + path;
-  std::vector<std::byte> encoded;
-  if (const aiTexture* embedded = textures.in.GetEmbeddedTexture(path.c_str())) {
-    if (embedded->mHeight != 0) return raw_texture(*embedded, path);
-    encoded.resize(embedded->mWidth);  // then its size in bytes
-    std::memcpy(encoded.data(), embedded->pcData, encoded.size());
-  } else {
-    LUXEL_TRY(encoded,
-              read_named_file(textures.source.files, path,
-                              fmt::format("{}: the texture of {}", textures.source.name, user),
-                              textures.source.memory));
-  }
+  const SourceFile& source = textures.pictures.source;
+  const aiTexture* const embedded = textures.in.GetEmbeddedTexture(path.c_str());
+  if (embedded == nullptr) return load_picture(source, path, user);
+  if (embedded->mHeight != 0) return raw_texture(*embedded, path);
+  std::vector<std::byte> encoded(embedded->mWidth);  // then its size in bytes
+  std::memcpy(encoded.data(), embedded->pcData, encoded.size());
   LUXEL_TRY(scene::Texture texture,
-            decode_texture(std::move(encoded), name, user, textures.source.memory));
+            decode_texture(std::move(encoded), source.name + ": " + path, user, source.memory));
   texture.name = path;
   return texture;
 }
@@ -57,22 +49,19 @@ scene::Wrap wrap_of(aiTextureMapMode mode) {
   return mode == aiTextureMapMode_Mirror ? scene::Wrap::mirror : scene::Wrap::repeat;
 }
 
-/// The first texture of a kind; none when the material has none.
+/// The first texture of a kind. None: the material has none, or its picture is lost, and then
+/// `lost` becomes true.
 Result<TextureRef> read_ref(Textures& textures, const aiMaterial& in, aiTextureType type,
-                            const std::string& user) {
+                            const std::string& user, std::string_view instead, bool& lost) {
   TextureRef ref;
   aiString path;
   unsigned uv_set = 0;
   aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
   if (in.GetTexture(type, 0, &path, nullptr, &uv_set, nullptr, nullptr, modes) != aiReturn_SUCCESS)
     return ref;
-  const auto [known, is_new] =
-      textures.known.try_emplace(path.C_Str(), uint32_t(textures.out.scene.textures.size()));
-  if (is_new) {
-    LUXEL_TRY(scene::Texture texture, load_texture(textures, path.C_Str(), user));
-    textures.out.scene.textures.push_back(std::move(texture));
-  }
-  ref.texture = known->second;
+  const auto load = [&] { return load_texture(textures, path.C_Str(), user); };
+  LUXEL_TRY(ref.texture, picture_of(textures.pictures, path.C_Str(), instead, load));
+  lost = ref.texture == scene::kNone;
   ref.uv_set = uv_set == 1 ? 1 : 0;
   ref.wrap_u = wrap_of(modes[0]);
   ref.wrap_v = wrap_of(modes[1]);
@@ -98,7 +87,7 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   scene::Material out = default_material();
   // What Assimp makes up for faces without a material; that of an .x has no name.
   if (std::strcmp(name.C_Str(), AI_DEFAULT_MATERIAL_NAME) == 0) return out;
-  if (textures.source.extension == ".x" && name.length == 0) return out;
+  if (textures.pictures.source.extension == ".x" && name.length == 0) return out;
   out.name = name.C_Str();
   const std::string user = label("material", index, out.name);
   out.base_color = color_of(in, AI_MATKEY_COLOR_DIFFUSE, out.base_color);
@@ -117,11 +106,16 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   in.Get(AI_MATKEY_TWOSIDED, two_sided);
   out.double_sided = two_sided != 0;
 
-  LUXEL_TRY(out.base_color_texture, read_ref(textures, in, aiTextureType_DIFFUSE, user));
-  if (out.base_color_texture.texture == scene::kNone) {
-    LUXEL_TRY(out.base_color_texture, read_ref(textures, in, aiTextureType_BASE_COLOR, user));
+  bool no_color = false, no_glow = false;
+  LUXEL_TRY(out.base_color_texture,
+            read_ref(textures, in, aiTextureType_DIFFUSE, user, kColorInstead, no_color));
+  if (out.base_color_texture.texture == scene::kNone && !no_color) {
+    LUXEL_TRY(out.base_color_texture,
+              read_ref(textures, in, aiTextureType_BASE_COLOR, user, kColorInstead, no_color));
   }
-  LUXEL_TRY(out.emission_texture, read_ref(textures, in, aiTextureType_EMISSIVE, user));
+  LUXEL_TRY(out.emission_texture,
+            read_ref(textures, in, aiTextureType_EMISSIVE, user, kNoGlow, no_glow));
+  if (no_glow) out.emission = {};  // where is not known
   // A picture alone means the picture as it is.
   if (out.emission_texture.texture != scene::kNone && max_component(out.emission) <= 0)
     out.emission = {1, 1, 1};
@@ -131,7 +125,7 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
 }  // namespace
 
 Status read_assimp_materials(const aiScene& in, const SourceFile& source, Imported& out) {
-  Textures textures{in, source, out, {}};
+  Textures textures{in, {source, out}};
   for (unsigned i = 0; i < in.mNumMaterials; ++i) {
     LUXEL_TRY(scene::Material material, read_material(textures, i));
     out.scene.materials.push_back(std::move(material));

@@ -8,6 +8,7 @@ namespace luxel::import {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 std::string settings(const std::string& unit, int up, int front, int front_sign,
@@ -222,6 +223,37 @@ TEST(Fbx, MaterialsTexturesAndCoordinates) {
   for (size_t v = 0; v < 4; ++v) {
     EXPECT_FLOAT_EQ(mesh.uv0[v].x, mesh.positions[v].x > 0 ? 1.0f : 0.0f);
     EXPECT_FLOAT_EQ(mesh.uv0[v].y, mesh.positions[v].y > 0 ? 0.0f : 0.75f);
+  }
+}
+
+// KayKit's files name a picture on the disk of their author; 3ds Max's procedural textures name
+// none.
+TEST(Fbx, PicturesOfOtherMachinesAreLookedForOrLost) {
+  const auto with_picture = [](const std::string& name) {
+    std::string text = room(centimetres_z_up());
+    for (const std::string stated : {"C:\\author\\pics\\paint.png", "pics\\paint.png"})
+      text.replace(text.find(stated), stated.size(), name);
+    return text;
+  };
+  const TemporaryFolder root;
+  std::filesystem::create_directory(root.path() / "fbx");
+  std::filesystem::create_directory(root.path() / "textures");
+  root.write("textures/Paint.png", png_of(3, 1, {128, 128, 128, 255}));
+  const std::string absolute = with_picture("C:\\author\\assets\\paint.png");
+  const auto found = import_scene(root.write("fbx/a.fbx", absolute));
+  EXPECT_EQ(scene_of(found).textures.size(), 1u);
+  EXPECT_THAT(found->warnings, IsEmpty());
+  std::filesystem::remove(root.path() / "textures/Paint.png");
+  for (const auto& [text, why] :
+       {std::pair(absolute, "C:/author/assets/paint.png, which is missing"),
+        std::pair(with_picture(""), "names no file")}) {
+    const auto lost = import_scene(root.write("fbx/a.fbx", text));
+    const scene::Scene scene = scene_of(lost);
+    EXPECT_TRUE(scene.textures.empty());
+    expect_near(scene::reflectance_at(scene, {0, 0, {0.3f, 0.3f}}), {0.25f, 0.3f, 0.35f}, 1e-5f);
+    ASSERT_EQ(lost->warnings.size(), 1u);
+    EXPECT_THAT(lost->warnings[0], HasSubstr(why));
+    EXPECT_THAT(lost->warnings[0], HasSubstr("; the material's colour is used"));
   }
 }
 

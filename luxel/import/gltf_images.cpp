@@ -63,30 +63,30 @@ Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t in
   }
   const std::string uri = image.value("uri", "");
   if (!is_data(uri))
-    return read_named_file(reader.source.files, decoded_uri(uri), what, reader.source.memory);
+    return read_named_picture(reader.source.files, decoded_uri(uri), what, reader.source.memory);
   const std::vector<unsigned char>& held = reader.model.images[index].image;
   return bytes_of(held.data(), held.size());
 }
 
-Result<uint32_t> GltfImages::load(int image_index, const std::string& user) {
+Result<uint32_t> load_image(const GltfReader& reader, Pictures& pictures, int image_index,
+                            const std::string& user, std::string_view instead) {
   const size_t index = size_t(image_index);
-  const Json& image = reader_.document["images"][index];
-  const std::string place = place_of(image, index);
-  if (const auto known = known_.find(place); known != known_.end()) return known->second;
-  const std::string uri = image.value("uri", ""), name = reader_.model.images[index].name;
-  const std::string file = uri.empty() || is_data(uri) ? label("image", index, name) : uri;
-  const std::string where = reader_.source.name + ": " + file;
-  LUXEL_TRY(std::vector<std::byte> encoded,
-            encoded_image(reader_, index,
-                          fmt::format("{}: the texture of {}", reader_.source.name, user)));
-  if (encoded.empty())
-    return fail(ErrorCode::bad_input, "{}: the texture of {} is empty", where, user);
-  LUXEL_TRY(scene::Texture texture,
-            decode_texture(std::move(encoded), where, user, reader_.source.memory));
-  texture.name = name.empty() ? file : name;
-  reader_.out.scene.textures.push_back(std::move(texture));
-  // Only now: one that cannot be read is an error for everybody who asks for it.
-  return known_[place] = uint32_t(reader_.out.scene.textures.size() - 1);
+  const Json& image = reader.document["images"][index];
+  const auto load = [&]() -> Result<scene::Texture> {
+    const std::string uri = image.value("uri", ""), name = reader.model.images[index].name;
+    const std::string file = uri.empty() || is_data(uri) ? label("image", index, name) : uri;
+    const std::string where = reader.source.name + ": " + file;
+    LUXEL_TRY(std::vector<std::byte> encoded,
+              encoded_image(reader, index,
+                            fmt::format("{}: the texture of {}", reader.source.name, user)));
+    if (encoded.empty())
+      return fail(ErrorCode::bad_input, "{}: the texture of {} is empty", where, user);
+    LUXEL_TRY(scene::Texture texture,
+              decode_texture(std::move(encoded), where, user, reader.source.memory));
+    texture.name = name.empty() ? file : name;
+    return texture;
+  };
+  return picture_of(pictures, place_of(image, index), instead, load);
 }
 
 }  // namespace luxel::import

@@ -1,28 +1,18 @@
 // The pictures of a glTF file. For the glTF reader only.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "luxel/import/gltf_parts.h"
+#include "luxel/import/pictures.h"
 
 namespace luxel::import {
 
-/// Decodes pictures where a material first asks for them: files carry normal maps and variants that
-/// nobody here looks at. Images that share their bytes, a file or a buffer view, are one texture.
-class GltfImages {
- public:
-  explicit GltfImages(GltfReader& reader) : reader_(reader) {}
-
-  /// The scene's number of a glTF image. `user` asks for it. Errors: missing, damaged, more pixels
-  /// than memory is left for.
-  Result<uint32_t> load(int image, const std::string& user);
-
- private:
-  GltfReader& reader_;
-  std::map<std::string, uint32_t> known_;  ///< by what the images have in common
-};
+/// picture_of() a glTF image. Images that share their bytes, a file or a buffer view, are one
+/// texture. Errors: damaged, more pixels than memory is left for.
+Result<uint32_t> load_image(const GltfReader& reader, Pictures& pictures, int image,
+                            const std::string& user, std::string_view instead);
 
 /// The bytes of an image of the document: a buffer view of the model, a data URI that the model
 /// holds decoded, or a file.

@@ -48,13 +48,17 @@ Result<int> image_of(const GltfReader& reader, const tinygltf::Texture& texture,
               where);
 }
 
-Result<TextureRef> read_ref(GltfReader& reader, GltfImages& images,
-                            const tinygltf::TextureInfo& info, const std::string& user) {
+Result<TextureRef> read_ref(GltfReader& reader, Pictures& pictures,
+                            const tinygltf::TextureInfo& info, const std::string& user,
+                            std::string_view instead) {
   TextureRef ref;
   if (info.index < 0) return ref;
   const tinygltf::Texture& texture = reader.model.textures[size_t(info.index)];
-  LUXEL_TRY(const int image, image_of(reader, texture, info.index, user));
-  LUXEL_TRY(ref.texture, images.load(image, user));
+  const Result<int> image = image_of(reader, texture, info.index, user);
+  const auto none = [&]() -> Result<scene::Texture> { return Failure{image.error()}; };
+  LUXEL_TRY(ref.texture,
+            image ? load_image(reader, pictures, *image, user, instead)
+                  : picture_of(pictures, fmt::format("texture {}", info.index), instead, none));
   ref.uv_set = info.texCoord;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = reader.model.samplers[size_t(texture.sampler)];
@@ -69,6 +73,17 @@ Result<TextureRef> read_ref(GltfReader& reader, GltfImages& images,
     ref.uv_set = 0;
   }
   return ref;
+}
+
+bool is_lost(const tinygltf::TextureInfo& info, const TextureRef& ref) {
+  return info.index >= 0 && ref.texture == scene::kNone;
+}
+
+/// glTF's own colour is white, which means the picture as it is.
+bool states_color(const GltfReader& reader, size_t material) {
+  const auto& in = reader.document["materials"][material];
+  const auto pbr = in.find("pbrMetallicRoughness");
+  return pbr != in.end() && pbr->contains("baseColorFactor");
 }
 
 scene::AlphaMode alpha_mode_of(const std::string& mode) {
@@ -133,7 +148,7 @@ Result<tinygltf::TextureInfo> texture_in(const GltfReader& reader, const tinyglt
   return info;
 }
 
-Status read_diffuse_transmission(GltfReader& reader, GltfImages& images,
+Status read_diffuse_transmission(GltfReader& reader, Pictures& pictures,
                                  const tinygltf::Material& in, const std::string& user,
                                  scene::Material& out) {
   const auto it = in.extensions.find("KHR_materials_diffuse_transmission");
@@ -144,19 +159,21 @@ Status read_diffuse_transmission(GltfReader& reader, GltfImages& images,
       vec3_in(it->second, "diffuseTransmissionColorFactor", out.diffuse_transmission_color);
   LUXEL_TRY(const tinygltf::TextureInfo share,
             texture_in(reader, it->second, "diffuseTransmissionTexture", user));
-  LUXEL_TRY(out.diffuse_transmission_texture, read_ref(reader, images, share, user));
+  LUXEL_TRY(out.diffuse_transmission_texture, read_ref(reader, pictures, share, user, kNotClear));
+  if (is_lost(share, out.diffuse_transmission_texture)) out.diffuse_transmission = 0;
   LUXEL_TRY(const tinygltf::TextureInfo color,
             texture_in(reader, it->second, "diffuseTransmissionColorTexture", user));
-  LUXEL_TRY(out.diffuse_transmission_color_texture, read_ref(reader, images, color, user));
+  LUXEL_TRY(out.diffuse_transmission_color_texture,
+            read_ref(reader, pictures, color, user, kColorInstead));
   return {};
 }
 
 /// Light does without normal maps: one that cannot be read is left out.
-void read_normal_map(GltfReader& reader, GltfImages& images, const tinygltf::NormalTextureInfo& in,
+void read_normal_map(GltfReader& reader, Pictures& pictures, const tinygltf::NormalTextureInfo& in,
                      const std::string& user, scene::Material& out) {
   tinygltf::TextureInfo info;
   info.index = in.index, info.texCoord = in.texCoord, info.extensions = in.extensions;
-  const Result<TextureRef> ref = read_ref(reader, images, info, user);
+  const Result<TextureRef> ref = read_ref(reader, pictures, info, user, kNoBumps);
   if (!ref) {
     reader.warn("the normal map of {} is left out: {}", user, ref.error().message);
     return;
@@ -164,7 +181,7 @@ void read_normal_map(GltfReader& reader, GltfImages& images, const tinygltf::Nor
   out.normal_texture = *ref, out.normal_scale = float(in.scale);
 }
 
-Result<scene::Material> read_material(GltfReader& reader, GltfImages& images, size_t index) {
+Result<scene::Material> read_material(GltfReader& reader, Pictures& pictures, size_t index) {
   const tinygltf::Material& in = reader.model.materials[index];
   const auto& pbr = in.pbrMetallicRoughness;
   const std::string user = label("material", index, in.name);
@@ -191,18 +208,25 @@ Result<scene::Material> read_material(GltfReader& reader, GltfImages& images, si
     out.transmission = float(number_in(it->second, "transmissionFactor", 0));
     LUXEL_TRY(const tinygltf::TextureInfo info,
               texture_in(reader, it->second, "transmissionTexture", user));
-    LUXEL_TRY(out.transmission_texture, read_ref(reader, images, info, user));
+    LUXEL_TRY(out.transmission_texture, read_ref(reader, pictures, info, user, kNotClear));
+    if (is_lost(info, out.transmission_texture)) out.transmission = 0;
   }
-  LUXEL_TRY_STATUS(read_diffuse_transmission(reader, images, in, user, out));
-  LUXEL_TRY(out.base_color_texture, read_ref(reader, images, pbr.baseColorTexture, user));
+  LUXEL_TRY_STATUS(read_diffuse_transmission(reader, pictures, in, user, out));
+  const bool has_holes = out.alpha_mode != scene::AlphaMode::opaque;
+  LUXEL_TRY(out.base_color_texture, read_ref(reader, pictures, pbr.baseColorTexture, user,
+                                             has_holes ? kNoHoles : kColorInstead));
+  if (is_lost(pbr.baseColorTexture, out.base_color_texture) && !states_color(reader, index))
+    out.base_color = default_material().base_color;
   if (max_component(out.emission) > 0) {
-    LUXEL_TRY(out.emission_texture, read_ref(reader, images, in.emissiveTexture, user));
+    LUXEL_TRY(out.emission_texture, read_ref(reader, pictures, in.emissiveTexture, user, kNoGlow));
+    if (is_lost(in.emissiveTexture, out.emission_texture)) out.emission = {};  // where is not known
   }
   if (out.metallic > 0) {
-    tinygltf::TextureInfo metallic = pbr.metallicRoughnessTexture;
-    LUXEL_TRY(out.metallic_texture, read_ref(reader, images, metallic, user));
+    const tinygltf::TextureInfo& metallic = pbr.metallicRoughnessTexture;
+    LUXEL_TRY(out.metallic_texture, read_ref(reader, pictures, metallic, user, kNoMetal));
+    if (is_lost(metallic, out.metallic_texture)) out.metallic = 0;
   }
-  read_normal_map(reader, images, in.normalTexture, user, out);
+  read_normal_map(reader, pictures, in.normalTexture, user, out);
   set_highlight(reader, in, out);
   return out;
 }
@@ -251,9 +275,9 @@ Rgb vec3_in(const tinygltf::Value& object, const char* key, Rgb fallback) {
 }
 
 Status read_materials(GltfReader& reader) {
-  GltfImages images(reader);
+  Pictures pictures{reader.source, reader.out};
   for (size_t i = 0; i < reader.model.materials.size(); ++i) {
-    LUXEL_TRY(scene::Material material, read_material(reader, images, i));
+    LUXEL_TRY(scene::Material material, read_material(reader, pictures, i));
     reader.out.scene.materials.push_back(std::move(material));
   }
   warn_about_metals(reader);

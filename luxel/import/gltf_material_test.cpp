@@ -194,7 +194,7 @@ TEST(GltfMaterial, ABrokenNormalMapIsLeftOutAndSaid) {
   ASSERT_TRUE(imported);
   EXPECT_EQ(imported->scene.materials[0].normal_texture.texture, scene::kNone);
   EXPECT_THAT(imported->warnings,
-              Contains(HasSubstr("the normal map of material 0 (brick) is left out: ")));
+              Contains(HasSubstr("(texture of material 0 (brick)); its normal map is left out")));
 }
 
 TEST(GltfMaterial, ExternalTextureIsFoundBesideTheFile) {
@@ -209,23 +209,72 @@ TEST(GltfMaterial, ExternalTextureIsFoundBesideTheFile) {
   EXPECT_EQ(scene.textures[0].width, 4);
 }
 
-TEST(GltfMaterial, MissingAndCorruptTexturesNameFileAndMaterial) {
+// A picture is colour only: a bake goes on without one that is lost, and says so once.
+TEST(GltfMaterial, LostTexturesLeaveTheColourAndAreSaid) {
+  Gltf gltf = square_with_material(
+      {{"name", "brick"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  gltf.json["materials"].push_back(gltf.json["materials"][0]);
+  gltf.json["images"] = {{{"uri", "nowhere.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  auto& factors = gltf.json["materials"][0]["pbrMetallicRoughness"];
+  factors["metallicFactor"] = gltf.json["materials"][1]["pbrMetallicRoughness"]["metallicFactor"] =
+      0;
+  for (const bool has_color : {false, true}) {
+    if (has_color) factors["baseColorFactor"] = {0.5, 0.25, 0.125, 1};
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.write("a.glb", gltf.glb());
+    const auto imported = import_scene(file);
+    const scene::Scene scene = scene_of(imported);
+    expect_near(scene.materials[0].base_color,
+                has_color ? Rgb{0.5f, 0.25f, 0.125f} : Rgb{0.8f, 0.8f, 0.8f}, 1e-6f);
+    EXPECT_EQ(scene.materials[0].base_color_texture.texture, scene::kNone);
+    ASSERT_EQ(imported->warnings.size(), 1u);
+    EXPECT_THAT(imported->warnings[0],
+                HasSubstr("the texture of material 0 (brick) is nowhere.png, which is missing; put "
+                          "it beside the scene or name its folder with --search-path; the "
+                          "material's colour is used"));
+    folder.write("nowhere.png", "GIF89a");
+    EXPECT_THAT(all_of(import_scene(file)->warnings),
+                HasSubstr("nowhere.png: the picture is none of PNG, JPEG, WebP, BMP and TGA"));
+  }
+}
+
+TEST(GltfMaterial, WhatALostTextureWouldHaveLimitedIsNotThere) {
+  Gltf gltf = square_with_material(
+      {{"name", "panel"},
+       {"emissiveFactor", {1, 1, 1}},
+       {"emissiveTexture", {{"index", 0}}},
+       {"alphaMode", "MASK"},
+       {"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 0}}}}},
+       {"extensions",
+        {{"KHR_materials_transmission",
+          {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}}}}}});
+  gltf.json["images"] = {{{"uri", "nowhere.png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  const auto imported = import_glb(gltf);
+  const scene::Material& m = scene_of(imported).materials[0];
+  EXPECT_EQ(max_component(m.emission), 0) << "a panel does not glow all over";
+  EXPECT_EQ(m.metallic, 0);
+  EXPECT_EQ(m.transmission, 0);
+  EXPECT_EQ(m.alpha, 1);
+  for (const char* end : {"; it does not glow", "; the material's colour is used, without holes",
+                          "; it is no metal", "; it lets no light through"})
+    EXPECT_THAT(imported->warnings, Contains(HasSubstr(end)));
+}
+
+TEST(GltfMaterial, DamagedTexturesAreErrorsThatNameFileAndMaterial) {
   Gltf gltf = square_with_material(
       {{"name", "brick"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   gltf.json["images"] = {{{"uri", "nowhere.png"}}};
   gltf.json["textures"] = {{{"source", 0}}};
-  auto imported = import_glb(gltf);
-  ASSERT_FALSE(imported);
-  EXPECT_THAT(imported.error().message, HasSubstr("nowhere.png"));
-  EXPECT_THAT(imported.error().message, HasSubstr("brick"));
-
   const std::string good = png_of(8, 8, {1, 2, 3, 255});
   std::string flipped = good;
   flipped[good.size() / 2] ^= 1;
-  for (const std::string& bad : {good.substr(0, good.size() / 2), std::string("GIF89a"), flipped}) {
+  for (const std::string& bad : {good.substr(0, good.size() / 2), flipped}) {
     const TemporaryFolder folder;
     folder.write("nowhere.png", bad);
-    imported = import_scene(folder.write("a.glb", gltf.glb()));
+    const auto imported = import_scene(folder.write("a.glb", gltf.glb()));
     ASSERT_FALSE(imported);
     EXPECT_THAT(imported.error().message, HasSubstr("nowhere.png"));
     EXPECT_THAT(imported.error().message, HasSubstr("brick"));
@@ -277,37 +326,25 @@ TEST(GltfMaterial, Ktx2IsReplacedByItsFallbackOrSaid) {
   gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
   gltf.json["textures"][0].erase("source");
   const auto needed = import_glb(gltf);
-  ASSERT_FALSE(needed);
-  EXPECT_EQ(needed.error().code, ErrorCode::unsupported);
-  EXPECT_THAT(needed.error().message,
-              HasSubstr("a.glb: texture 0 of material 0 (brick) exists only as KTX2 "
-                        "(KHR_texture_basisu), which luxel cannot decode; export it with PNG or "
-                        "JPEG textures"));
-  // It is not needed as a normal map.
-  gltf.json["materials"][0] = {{"normalTexture", {{"index", 0}}}};
-  EXPECT_TRUE(import_glb(gltf));
+  expect_near(scene_of(needed).materials[0].base_color, {0.8f, 0.8f, 0.8f}, 1e-6f);
+  EXPECT_THAT(needed->warnings,
+              Contains(HasSubstr("a.glb: texture 0 of material 0 (brick) exists only as KTX2 "
+                                 "(KHR_texture_basisu), which luxel cannot decode; export it with "
+                                 "PNG or JPEG textures; the material's colour is used")));
 }
 
-TEST(GltfMaterial, AMissingTextureOfAMaskIsSaid) {
-  Gltf gltf = square_with_texture({{"source", 0}}, {});
-  gltf.json["materials"][0]["alphaMode"] = "MASK";
-  gltf.json["images"] = {{{"uri", "leaves.png"}}};
-  const auto imported = import_glb(gltf);
-  ASSERT_FALSE(imported);
-  EXPECT_THAT(imported.error().message,
-              HasSubstr("the texture of material 0 (brick) is leaves.png, which is missing"));
-}
-
-// As a normal map it can be left out; the same picture as a colour cannot.
-TEST(GltfMaterial, AMissingTextureIsSaidToEverybodyWhoNeedsIt) {
+// A lost normal map matters little; the same picture as a colour is said again.
+TEST(GltfMaterial, AMissingTextureIsSaidForEachUse) {
   Gltf gltf = square_with_texture({{"source", 0}}, {});
   gltf.json["images"] = {{{"uri", "leaves.png"}}};
   const nlohmann::json needs_it = gltf.json["materials"][0];
   gltf.json["materials"] = {{{"name", "first"}, {"normalTexture", {{"index", 0}}}}, needs_it};
   const auto imported = import_glb(gltf);
-  ASSERT_FALSE(imported);
-  EXPECT_THAT(imported.error().message,
-              HasSubstr("the texture of material 1 (brick) is leaves.png, which is missing"));
+  ASSERT_TRUE(imported);
+  EXPECT_THAT(imported->warnings, Contains(HasSubstr("; its normal map is left out")));
+  EXPECT_THAT(imported->warnings,
+              Contains(HasSubstr("the texture of material 1 (brick) is leaves.png, which is "
+                                 "missing")));
 }
 
 nlohmann::json glossy(nlohmann::json values) {

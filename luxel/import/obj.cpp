@@ -9,6 +9,7 @@
 
 #include "luxel/base/vec2_double.h"
 #include "luxel/import/obj_text.h"
+#include "luxel/import/pictures.h"
 #include "luxel/import/polygon.h"
 
 namespace luxel::import {
@@ -79,29 +80,16 @@ struct Reading {
   const SourceFile& source;
   const ObjText& in;
   Imported& out;
-  std::map<std::string, uint32_t> textures;  ///< of the scene, by name
+  Pictures pictures;
   std::map<uint32_t, uint32_t> materials{};  ///< of the scene, by number in the file
 };
 
 Result<scene::TextureRef> texture_of(Reading& reading, const MtlPicture& picture,
-                                     const std::string& user) {
+                                     const std::string& user, std::string_view instead) {
   scene::TextureRef ref;
   if (picture.name.empty()) return ref;
-  std::vector<scene::Texture>& textures = reading.out.scene.textures;
-  const auto [known, is_new] =
-      reading.textures.try_emplace(picture.name, uint32_t(textures.size()));
-  if (is_new) {
-    LUXEL_TRY(std::vector<std::byte> encoded,
-              read_named_file(reading.source.files, picture.name,
-                              fmt::format("{}: the texture of {}", reading.source.name, user),
-                              reading.source.memory));
-    LUXEL_TRY(scene::Texture texture,
-              decode_texture(std::move(encoded), reading.source.name + ": " + picture.name, user,
-                             reading.source.memory));
-    texture.name = picture.name;
-    textures.push_back(std::move(texture));
-  }
-  ref.texture = known->second;
+  const auto load = [&] { return load_picture(reading.source, picture.name, user); };
+  LUXEL_TRY(ref.texture, picture_of(reading.pictures, picture.name, instead, load));
   if (picture.clamp) ref.wrap_u = ref.wrap_v = scene::Wrap::clamp;
   // The scene's v grows downwards: 1 - (s v + o) = s (1 - v) + (1 - s - o).
   ref.scale = picture.scale;
@@ -121,15 +109,16 @@ Result<scene::Material> read_material(Reading& reading, const std::string& name,
   out.specular = in.specular, out.sharpness = in.sharpness;
   out.emission = in.emission, out.metallic = in.metallic, out.alpha = in.alpha;
   if (out.alpha < 1) out.alpha_mode = scene::AlphaMode::blend;
-  LUXEL_TRY(out.base_color_texture, texture_of(reading, in.color_picture, user));
-  LUXEL_TRY(out.emission_texture, texture_of(reading, in.emission_picture, user));
+  LUXEL_TRY(out.base_color_texture, texture_of(reading, in.color_picture, user, kColorInstead));
+  LUXEL_TRY(out.emission_texture, texture_of(reading, in.emission_picture, user, kNoGlow));
   // A picture alone means the picture as it is.
   if (in.color)
     out.base_color = *in.color;
   else if (out.base_color_texture.texture != scene::kNone)
     out.base_color = {1, 1, 1};
-  if (out.emission_texture.texture != scene::kNone && max_component(out.emission) <= 0)
-    out.emission = {1, 1, 1};
+  const bool glows = out.emission_texture.texture != scene::kNone;
+  if (glows && max_component(out.emission) <= 0) out.emission = {1, 1, 1};
+  if (!glows && !in.emission_picture.name.empty()) out.emission = {};  // where is not known
   return out;
 }
 
@@ -275,7 +264,7 @@ Result<Imported> read_obj(const SourceFile& source) {
   Imported out;
   LUXEL_TRY(ObjText in, plain_obj(source, out.warnings));
   const Found found = read_text(in);
-  Reading reading{source, in, out, {}};
+  Reading reading{source, in, out, {source, out}};
   LUXEL_TRY_STATUS(read_materials(found, reading));
   OddFaces odd;
   append_groups(found, reading, odd);

@@ -7,6 +7,7 @@
 namespace luxel::import {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -138,7 +139,7 @@ TEST(Obj, MissingMaterialFileIsAWarning) {
   expect_near(scene::reflectance_at(scene, {0, 0, {0.3f, 0.3f}}), {0.8f, 0.8f, 0.8f}, 1e-6f);
 }
 
-TEST(Obj, TexturesAreFoundThroughBackslashesAndMissingOnesNamed) {
+TEST(Obj, TexturesAreFoundThroughBackslashesAndLostOnesNamed) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "pics");
   folder.write("pics/glow.png", png_of(3, 1, {255, 255, 255, 255}));
@@ -150,11 +151,19 @@ TEST(Obj, TexturesAreFoundThroughBackslashesAndMissingOnesNamed) {
   EXPECT_EQ(scene.textures[0].width, 3);
   expect_near(scene::emission_at(scene, {1, 0, {0.3f, 0.3f}}), {2, 2, 2}, 1e-5f);
 
-  folder.write("m.mtl", "newmtl white\nmap_Kd lost.png\n");
+  folder.write("m.mtl",
+               "newmtl white\nmap_Kd lost.png\nnewmtl glow\nKd 0.1 0.2 0.3\nKe 2 2 2\n"
+               "map_Ke lost.png\nmap_Kd lost.png\n");
   const auto imported = import_scene(folder.path() / "a.obj");
-  ASSERT_FALSE(imported);
-  EXPECT_THAT(imported.error().message, HasSubstr("lost.png"));
-  EXPECT_THAT(imported.error().message, HasSubstr("white"));
+  const scene::Scene without = scene_of(imported);
+  EXPECT_THAT(imported->warnings,
+              ElementsAre(HasSubstr("the texture of material 0 (white) is lost.png, which is "
+                                    "missing; put it beside the scene or name its folder with "
+                                    "--search-path; the material's colour is used"),
+                          HasSubstr("; it does not glow")));
+  expect_near(without.materials[0].base_color, {0.8f, 0.8f, 0.8f}, 1e-6f);
+  expect_near(without.materials[1].base_color, {0.1f, 0.2f, 0.3f}, 1e-6f);
+  EXPECT_EQ(max_component(without.materials[1].emission), 0);
 }
 
 constexpr const char* kUnitSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";

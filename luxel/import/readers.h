@@ -41,11 +41,6 @@ Status check_fbx(const SourceFile& source);
 /// Checks of a scene in an archive: .zae, .3mf, .zgl, .ifczip.
 Status check_packed(const SourceFile& source);
 
-/// Decodes `encoded` and keeps it. `name` is the picture's file or number, `user` who asked for it.
-/// Errors: damaged; more pixels than memory is left for.
-Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std::string& name,
-                                      const std::string& user, ReadingMemory& memory);
-
 /// Merges vertices that agree in every bit of every attribute, in the order of their first use.
 void join_identical_vertices(scene::Mesh& mesh);
 

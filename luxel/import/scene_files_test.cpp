@@ -84,7 +84,57 @@ TEST(SceneFiles, PipesAndFoldersAreRefusedAtOnce) {
   EXPECT_THAT(places.read("pipe.png"), HasSubstr("is a pipe or a device"));
   EXPECT_THAT(places.read("pics"), HasSubstr("is missing"));
   EXPECT_THAT(places.read(".."), HasSubstr("is missing"));
-  EXPECT_THAT(places.read(""), HasSubstr("is missing"));
+  EXPECT_THAT(places.read(""), HasSubstr("the texture of wall names no file"));
+}
+
+TEST(SceneFiles, AreFoundInAnyCase) {
+  const Places places;
+  EXPECT_EQ(places.read("PICS/In.PNG"), "scene/pics/in.png");
+  EXPECT_EQ(places.read("C:\\Work\\IN.png"), "scene/in.png");
+  places.root.write("scene/IN.png", "scene/IN.png");
+  EXPECT_EQ(places.read("IN.png"), "scene/IN.png") << "the name as it stands comes first";
+  EXPECT_EQ(places.read("in.png"), "scene/in.png");
+  EXPECT_EQ(places.read("iN.png"), "scene/IN.png") << "then the alphabet decides";
+  EXPECT_THAT(places.read("../SECRET.png"), HasSubstr("is missing"));
+}
+
+TEST(SceneFiles, AreFoundInAnyCaseInTheFolderThatTheProgramStartsIn) {
+  Places places;
+  const fs::path before = fs::current_path();
+  fs::current_path(*places.files.folder);
+  places.files.folder = fs::path();  // as that of "a.obj"
+  EXPECT_EQ(places.read("Pics/IN.png"), "scene/pics/in.png");
+  fs::current_path(before);
+}
+
+// Game artists keep pictures in a folder of their own, in or beside that of the models.
+TEST(SceneFiles, PicturesLieInFoldersOfTexturesToo) {
+  Places places;
+  for (const char* folder : {"scene/Textures", "textures", "more/TEXTURES"})
+    fs::create_directory(places.root.path() / folder);
+  for (const char* file :
+       {"scene/Textures/a.png", "textures/a.png", "textures/b.png", "more/TEXTURES/c.png"})
+    places.root.write(file, file);
+  const auto picture = [&](const std::string& stated) -> std::string {
+    ReadingMemory memory(0);
+    const auto bytes = read_named_picture(places.files, stated, "a.obj: the texture", memory);
+    if (!bytes) return bytes.error().message;
+    return {reinterpret_cast<const char*>(bytes->data()), bytes->size()};
+  };
+  EXPECT_EQ(picture("D:\\art\\A.png"), "scene/Textures/a.png");
+  EXPECT_EQ(picture("/home/artist/b.png"), "textures/b.png");
+  EXPECT_EQ(picture("../textures/b.png"), "textures/b.png");
+  EXPECT_EQ(picture("in.png"), "scene/in.png") << "beside the scene comes first";
+  EXPECT_THAT(picture("c.png"), HasSubstr("is missing"));
+  places.files.search_paths = {places.root.path() / "more"};
+  EXPECT_EQ(picture("c.png"), "more/TEXTURES/c.png");
+  EXPECT_THAT(places.read("b.png"), HasSubstr("is missing")) << "pictures only";
+  // Links lead no further.
+  fs::create_symlink(places.root.path() / "secret.png", places.root.path() / "textures/link.png");
+  EXPECT_THAT(picture("link.png"), HasSubstr("is missing"));
+  fs::remove_all(places.root.path() / "scene/Textures");
+  fs::create_directory_symlink(places.root.path(), places.root.path() / "scene/textures");
+  EXPECT_THAT(picture("secret.png"), HasSubstr("is missing"));
 }
 
 /// The unit square in a .gltf, whose buffer or texture is the file `uri`.
@@ -115,26 +165,35 @@ TEST(SceneFiles, HoldForEveryFileThatASceneNames) {
   root.write("wall.mtl", "newmtl wall\nKd 0.5 0.25 0.125\n");
   struct Case {
     std::string name, text;
+    bool is_picture;
   };
   for (const Case& c :
-       {Case{"a.gltf", square_that_names("buffers", "../square.bin")},
-        Case{"b.gltf", square_that_names("images", "../red%20dot.png")},
-        Case{"c.gltf", square_that_names("images", (root.path() / "red dot.png").string())}}) {
+       {Case{"a.gltf", square_that_names("buffers", "../square.bin"), false},
+        Case{"b.gltf", square_that_names("images", "../red%20dot.png"), true},
+        Case{"c.gltf", square_that_names("images", (root.path() / "red dot.png").string()),
+             true}}) {
     const fs::path file = root.write("scene/" + c.name, c.text);
     fs::rename(root.path() / "scene/square.bin", root.path() / "kept.bin");
     fs::rename(root.path() / "scene/red dot.png", root.path() / "kept.png");
-    if (c.name != "a.gltf")
-      fs::copy_file(root.path() / "kept.bin", root.path() / "scene/square.bin");
+    if (c.is_picture) fs::copy_file(root.path() / "kept.bin", root.path() / "scene/square.bin");
     const auto refused = import_scene(file);
-    ASSERT_FALSE(refused) << c.name;
-    EXPECT_EQ(refused.error().code, ErrorCode::io);
-    EXPECT_THAT(refused.error().message, HasSubstr("lies outside of the scene's folder")) << c.name;
+    ASSERT_EQ(refused.has_value(), c.is_picture) << c.name;
+    if (!refused) {
+      EXPECT_EQ(refused.error().code, ErrorCode::io);
+    } else {
+      EXPECT_TRUE(refused->scene.textures.empty()) << c.name;
+    }
+    EXPECT_THAT(refused ? all_of(refused->warnings) : refused.error().message,
+                HasSubstr("lies outside of the scene's folder"))
+        << c.name;
     ImportParams trusting;
     trusting.trust_paths = true;
-    EXPECT_TRUE(import_scene(file, trusting)) << c.name;
     ImportParams searching;
     searching.search_paths = {root.path()};
-    EXPECT_TRUE(import_scene(file, searching)) << c.name;
+    for (const ImportParams& params : {trusting, searching}) {
+      const auto imported = import_scene(file, params);
+      EXPECT_EQ(scene_of(imported).textures.size(), c.is_picture ? 1u : 0u) << c.name;
+    }
     fs::remove(root.path() / "scene/square.bin");
     fs::rename(root.path() / "kept.bin", root.path() / "scene/square.bin");
     fs::rename(root.path() / "kept.png", root.path() / "scene/red dot.png");

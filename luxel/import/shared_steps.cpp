@@ -6,7 +6,6 @@
 
 #include "luxel/base/random.h"
 #include "luxel/base/short_message.h"
-#include "luxel/image/codec.h"
 #include "luxel/import/readers.h"
 
 namespace luxel::import {
@@ -69,27 +68,6 @@ void join_identical_vertices(scene::Mesh& mesh) {
   gather(mesh.colors, kept);
   for (auto& triangle : mesh.triangles)
     for (uint32_t& corner : triangle) corner = new_index[corner];
-}
-
-Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std::string& name,
-                                      const std::string& user, ReadingMemory& memory) {
-  const auto allow = [&](uint32_t width, uint32_t height) {
-    return memory.take(uint64_t(4) * width * height,
-                       fmt::format("{}, a picture of {} x {} pixels", name, width, height));
-  };
-  auto image = image::decode_ldr(encoded, name, allow);
-  if (!image) return fail(image.error().code, "{} (texture of {})", image.error().message, user);
-  scene::Texture texture;
-  texture.name = name;
-  texture.width = image->width;
-  texture.height = image->height;
-  texture.rgba = std::move(image->data);
-  const std::byte first = encoded[0];  // decode_ldr() knows these three
-  texture.mime_type = first == std::byte{0x89}  ? "image/png"
-                      : first == std::byte{'R'} ? "image/webp"
-                                                : "image/jpeg";
-  texture.encoded = std::move(encoded);
-  return texture;
 }
 
 std::string one_sentence(std::string text) {

@@ -112,16 +112,16 @@ void open_records_of_others(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-void run_jpeg(std::span<const std::byte> input) {
+void run_picture(std::span<const std::byte> input) {
   is_read(image::decode_ldr(input, "a", [](uint32_t, uint32_t) { return Status{}; }));
   is_read(image::decode_display(input, "a"));
 }
 void run_png(std::span<const std::byte> input) {
-  run_jpeg(input);
+  run_picture(input);
   is_read(image::decode_ldr(repaired_png(input), "a"));
 }
 void run_webp(std::span<const std::byte> input) {
-  run_jpeg(input);
+  run_picture(input);
   is_read(image::decode_ldr(repaired_webp(input), "a"));
 }
 void run_hdr(std::span<const std::byte> input) { is_read(image::decode_hdr(input, "a")); }

@@ -7,7 +7,7 @@
 namespace luxel::fuzz {
 
 /// A picture as it is, a PNG, JPEG or WebP by its first bytes.
-void run_jpeg(std::span<const std::byte> input);
+void run_picture(std::span<const std::byte> input);
 /// A picture as it is, and as a PNG with its checksums repaired.
 void run_png(std::span<const std::byte> input);
 /// A picture as it is, and as a WebP with its lengths repaired.

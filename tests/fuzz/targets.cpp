@@ -10,6 +10,7 @@ namespace luxel::fuzz {
 std::span<const Target> targets() {
   static constexpr std::array kTargets{
       Target{"bake", run_bake},
+      Target{"bmp", run_picture},
       Target{"dae", run_dae},
       Target{"draco", run_draco},
       Target{"environment", run_environment},
@@ -20,7 +21,7 @@ std::span<const Target> targets() {
       Target{"gltf", run_gltf},
       Target{"hdr", run_hdr},
       Target{"ies", run_ies},
-      Target{"jpeg", run_jpeg},
+      Target{"jpeg", run_picture},
       Target{"kept_bake", run_kept_bake},
       Target{"light_script", run_light_script},
       Target{"lxr", run_lxr},
@@ -33,6 +34,7 @@ std::span<const Target> targets() {
       Target{"records", run_records},
       Target{"settings", run_settings},
       Target{"stl", run_stl},
+      Target{"tga", run_picture},
       Target{"webp", run_webp},
       Target{"x", run_x},
   };

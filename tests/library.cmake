@@ -35,6 +35,7 @@ set(examples ${SOURCE}/examples/library)
 # Where there is nothing of what only the pipeline needs.
 build(${examples}/relight relight -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON -DCMAKE_DISABLE_FIND_PACKAGE_TinyGLTF=ON
       -DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON -DCMAKE_DISABLE_FIND_PACKAGE_tinyobjloader=ON
+      -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON
       -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON)
 run(${luxel} relight ${SOURCE}/scenes/cornell-box.glb --patches 300 --rays 256 --target none
     -o ${FOLDER}/box.lxr)

@@ -20,6 +20,7 @@ packages=(
   libdraco-dev libmeshoptimizer-dev  # compressed glTF
   libjpeg-dev libwebp-dev            # JPEG and WebP textures
   libtinyobjloader-dev               # OBJ
+  libpugixml-dev                     # Collada
   libassimp-dev                      # FBX, Collada, ...
   libeigen3-dev                      # least squares
   libcgal-dev                        # exact predicates

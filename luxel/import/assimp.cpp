@@ -163,7 +163,7 @@ Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFi
 /// What Assimp gets in the place of a file that its reader could misread.
 struct Rewritten {
   PlainPly ply;
-  std::optional<std::string> x;
+  std::optional<std::string> text;  ///< of .x and .dae files
 };
 
 /// Checks a file by its own rules, and writes it anew where Assimp needs that.
@@ -174,9 +174,10 @@ Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& wa
   if (source.extension == ".ply") {
     LUXEL_TRY(out.ply, write_plain_ply(source, warnings));
   } else if (source.extension == ".x") {
-    LUXEL_TRY(out.x, write_plain_x(source));
+    LUXEL_TRY(out.text, write_plain_x(source));
   } else if (source.extension == ".dae") {
     LUXEL_TRY_STATUS(check_collada(source));
+    LUXEL_TRY(out.text, write_plain_collada(source));
   } else if (source.extension == ".fbx") {
     LUXEL_TRY_STATUS(check_fbx(source));
   }
@@ -186,7 +187,7 @@ Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& wa
 FilesForAssimp* files_for_assimp(const SourceFile& source, const Rewritten& rewritten) {
   auto* files = new FilesForAssimp(source);
   if (source.extension == ".ply") files->replace(source.path, rewritten.ply.text);
-  if (rewritten.x) files->replace(source.path, *rewritten.x);
+  if (rewritten.text) files->replace(source.path, *rewritten.text);
   return files;
 }
 

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 
 #include "luxel/import/test_files.h"
+#include "luxel/scene/digest.h"
 
 namespace luxel::import {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr const char* kCentimetresZUp =
@@ -228,6 +230,49 @@ TEST(Collada, AListThatIsShorterThanItsReaderThinksIsAnError) {
     ASSERT_FALSE(imported) << to;
     EXPECT_THAT(imported.error().message, HasSubstr("past the float_array 'pa'")) << to;
   }
+}
+
+// Some writers put each value on a line of its own.
+TEST(Collada, ValuesMayStandBetweenBlanks) {
+  const auto read = [](const std::string& text) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder.path() / "pics");
+    folder.write("pics/red paint.png", png_of(3, 1, {255, 0, 0, 255}));
+    const auto imported = import_scene(folder.write("a.dae", text));
+    return imported ? imported->scene : scene_of(imported);
+  };
+  const std::string text = room(kCentimetresZUp, kPerspective);
+  std::string spread;
+  for (size_t i = 0; i < text.size(); ++i) {
+    // Between a tag and a value, on either side of it.
+    const bool begins = i > 0 && text[i - 1] == '>' && text[i] != '<' && text[i] != '\n';
+    const bool ends = i > 0 && text[i] == '<' && text[i - 1] != '>' && text[i - 1] != '\n';
+    if (begins || ends) spread += " \r\n\t";
+    spread += text[i];
+  }
+  EXPECT_GT(spread.size(), text.size() + 200);
+  const scene::Scene plain = read(text), same = read(spread);
+  EXPECT_EQ(scene::difference(scene::digests_of(plain), scene::digests_of(same)), "");
+  expect_near(same.materials[0].emission, {17, 12, 4}, 1e-5f);
+}
+
+TEST(Collada, BrokenXmlAndUtf16AreSaid) {
+  std::string broken = room(kCentimetresZUp, kPerspective);
+  broken.erase(broken.find("</asset>"), 8);
+  EXPECT_THAT(import_text("a.dae", broken).error().message,
+              AllOf(HasSubstr("a.dae, line "), HasSubstr("its XML is broken: ")));
+  std::string wide = "\xff\xfe";
+  for (const char c : room(kCentimetresZUp, kPerspective)) wide += std::string{c, '\0'};
+  EXPECT_THAT(import_text("a.dae", wide).error().message, HasSubstr("it is UTF-16 or damaged; "));
+}
+
+// A name in Latin-1, as the file says of itself, becomes UTF-8.
+TEST(Collada, OtherEncodingsAreRead) {
+  std::string text = room(kCentimetresZUp, kPerspective);
+  text.replace(text.find("utf-8"), 5, "ISO-8859-1");
+  text.replace(text.find("name=\"paint\""), 12, "name=\"gr\xfcn\"");
+  const auto imported = import_text("a.dae", text);
+  EXPECT_EQ(scene_of(imported).materials[1].name, "gr\xc3\xbcn");
 }
 
 TEST(Collada, AttributesMayStandBehindAnyBlanks) {

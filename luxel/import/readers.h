@@ -37,6 +37,9 @@ Result<Imported> read_with_assimp(const SourceFile& source);
 /// Errors: those of checks; memory.
 Result<std::optional<std::string>> write_plain_x(const SourceFile& source);
 Status check_collada(const SourceFile& source);
+/// The text of a .dae file that check_collada() has passed, in UTF-8, without blanks around values.
+/// Errors: broken XML; UTF-16; memory.
+Result<std::string> write_plain_collada(const SourceFile& source);
 Status check_fbx(const SourceFile& source);
 /// Checks of a scene in an archive: .zae, .3mf, .zgl, .ifczip.
 Status check_packed(const SourceFile& source);

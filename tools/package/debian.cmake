@@ -80,7 +80,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME libluxel-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(dev_depends libembree-dev libtbb-dev libopenexr-dev libstb-dev libtinygltf-dev nlohmann-json3-dev
-    libmeshoptimizer-dev libjpeg-dev libwebp-dev libtinyobjloader-dev libassimp-dev libeigen3-dev zlib1g-dev
+    libmeshoptimizer-dev libjpeg-dev libwebp-dev libtinyobjloader-dev libpugixml-dev libassimp-dev libeigen3-dev zlib1g-dev
     libfmt-dev)
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "library of luxel for C++ programs

@@ -35,6 +35,7 @@ PARTS = [
     Part("stb", "libstb-dev", ALL, "headers"),
     Part("meshoptimizer", "libmeshoptimizer-dev", ALL, "headers"),
     Part("tinyobjloader", "libtinyobjloader-dev", ALL, "headers"),
+    Part("pugixml", "libpugixml-dev", ALL, "headers", ("*", "src/pugiconfig.hpp")),
     Part("JSON for Modern C++", "nlohmann-json3-dev", ALL, "headers",
          ("*", "include/nlohmann/detail/conversions/to_chars.hpp", "include/nlohmann/detail/output/serializer.hpp")),
     Part("fmt", "libfmt-dev", ALL, "headers"),
@@ -54,7 +55,7 @@ PARTS = [
 # interface, or the system: nothing of it is in luxel's files.
 INCLUDED = {
     "draco": "Draco", "tiny_gltf.h": "TinyGLTF", "stb": "stb", "meshoptimizer.h": "meshoptimizer",
-    "tiny_obj_loader.h": "tinyobjloader",
+    "tiny_obj_loader.h": "tinyobjloader", "pugixml.hpp": "pugixml",
     "nlohmann": "JSON for Modern C++", "fmt": "fmt", "Eigen": "Eigen", "CGAL": "CGAL",
     "tbb": "oneTBB", "OpenEXR": "OpenEXR", "Imath": "Imath", "CLI": "CLI11", "toml++": "toml++", "volk.h": "volk",
     "imgui.h": "Dear ImGui", "backends": "Dear ImGui", "pybind11": "pybind11",

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "luxel/base/file.h"
 #include "luxel/display/tone_map.h"
+#include "luxel/export/baked_glb.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
 #include "tests/command.h"
@@ -175,6 +177,48 @@ TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
         bake_for_outputs((s.path / "b" / "baked.glb").string(), s.path / "again",
                          "--uv keep --resolution 128 --samples 8");
     EXPECT_EQ(again.code, 0) << again.err;
+  }
+}
+
+// The lightmap takes TEXCOORD_1; a texture that looked at the scene's second set finds that in
+// TEXCOORD_2.
+TEST(BakedGlb, ReadsBackASecondSetOfTextureCoordinates) {
+  const ScratchFolder s;
+  scene::Scene sheet;
+  sheet.meshes.resize(1), sheet.instances.resize(1), sheet.materials.resize(1);
+  scene::Mesh& mesh = sheet.meshes[0];
+  mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}};
+  mesh.uv0 = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
+  mesh.uv1 = {{0.3f, 0}, {0.3f, 0}, {0.9f, 0}, {0.9f, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}}, mesh.triangle_material = {0, 0};
+  sheet.textures.push_back({.name = "bands", .width = 4, .height = 1, .rgba = {}});
+  sheet.textures[0].rgba = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 99, 99, 99, 255};
+  sheet.materials[0].base_color_texture = {.texture = 0, .uv_set = 1};
+  const auto glb = export_::scene_glb(sheet);
+  ASSERT_TRUE(glb && write_file_atomically(s.path / "sheet.glb", *glb));
+  ASSERT_EQ(
+      bake_for_outputs((s.path / "sheet.glb").string(), s.path / "b", "--resolution 16 --samples 1")
+          .code,
+      0);
+  const auto baked = import::import_scene(s.path / "b" / "baked.glb");
+  ASSERT_TRUE(baked) << baked.error().message;
+  using Seen = std::map<std::array<long, 3>, Rgb>;  // colour by place [1e-6 m]
+  const auto seen = [](const scene::Scene& scene) {
+    Seen out;
+    for (uint32_t t = 0; t < 2; ++t)
+      for (const Vec2 uv : {Vec2{0.2f, 0.1f}, Vec2{0.1f, 0.5f}, Vec2{0.3f, 0.3f}}) {
+        const scene::SurfacePoint p{0, t, {uv.x, uv.y}};
+        const Vec3 at = scene::world_position(scene, p);
+        out[{std::lround(1e6f * at.x), 0, std::lround(1e6f * at.z)}] =
+            scene::reflectance_at(scene, p);
+      }
+    return out;
+  };
+  const Seen before = seen(sheet), after = seen(baked->scene);
+  ASSERT_EQ(before.size(), 6u);
+  for (const auto& [place, color] : before) {
+    ASSERT_TRUE(after.contains(place));
+    EXPECT_LT(length(after.at(place) - color), 1e-5f);
   }
 }
 

@@ -78,17 +78,24 @@ void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bo
   }
 }
 
+/// What a format means by what its files hold.
+struct Habits {
+  bool srgb_colors = false;    ///< vertex colors are display values
+  bool facet_normals = false;  ///< normals are those of flat triangles, or 0: they say nothing
+};
+
 /// Assimp splits a surface by material; the parts that one node draws belong together.
-scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, bool srgb_colors) {
+scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts,
+                        const Habits& habits) {
   Wanted wanted;
   for (const unsigned p : parts) {
-    wanted.normals |= in.mMeshes[p]->HasNormals();
+    wanted.normals |= in.mMeshes[p]->HasNormals() && !habits.facet_normals;
     wanted.uv0 |= in.mMeshes[p]->HasTextureCoords(0);
     wanted.uv1 |= in.mMeshes[p]->HasTextureCoords(1);
     wanted.colors |= in.mMeshes[p]->HasVertexColors(0);
   }
   scene::Mesh mesh;
-  for (const unsigned p : parts) append_part(mesh, *in.mMeshes[p], wanted, srgb_colors);
+  for (const unsigned p : parts) append_part(mesh, *in.mMeshes[p], wanted, habits.srgb_colors);
   join_identical_vertices(mesh);
   return mesh;
 }
@@ -124,13 +131,13 @@ std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_fi
 }
 
 /// Nodes that draw the same parts share one mesh.
-void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool srgb_colors,
+void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const Habits& habits,
                    scene::Scene& out) {
   std::map<std::vector<unsigned>, uint32_t> known;
   for (const DrawnNode& node : drawn) {
     const auto [mesh, is_new] = known.try_emplace(node.parts, uint32_t(out.meshes.size()));
     if (is_new) {
-      out.meshes.push_back(merged_mesh(in, node.parts, srgb_colors));
+      out.meshes.push_back(merged_mesh(in, node.parts, habits));
       out.meshes.back().name = node.name;
     }
     out.instances.push_back({node.name, mesh->second, node.world});
@@ -237,7 +244,8 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   NodeTransforms transforms;
   const std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
-  add_instances(*in, drawn, rewritten.ply.has_display_colors, imported.scene);
+  const Habits habits{rewritten.ply.has_display_colors, source.extension == ".stl"};
+  add_instances(*in, drawn, habits, imported.scene);
   add_assimp_lights(*in, source, transforms, imported);
   add_assimp_cameras(*in, source, transforms, imported.scene);
   if (source.extension == ".ply" || source.extension == ".stl")

@@ -1,6 +1,6 @@
 // Units and axes of the files that Assimp reads. Assimp turns COLLADA's unit and up axis into its
 // root node's transform, and leaves FBX's in the scene's metadata (its GlobalScale step would take
-// shear and mirrors out of the nodes). The other formats state neither: metres, Y up.
+// shear and mirrors out of the nodes). The other formats state neither.
 #include <assimp/scene.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ Vec3 fbx_axis(const aiMetadata& facts, const std::string& name, int axis) {
 
 Mat34 world_from_file(const aiScene& in, const SourceFile& source,
                       std::vector<std::string>& warnings) {
-  if (source.extension != ".fbx" || in.mMetaData == nullptr) return {};
+  if (source.extension != ".fbx" || in.mMetaData == nullptr) return source.world_from_file;
   const aiMetadata& facts = *in.mMetaData;
   const float unit = fbx_unit_m(facts, source, warnings);
   // The rows: what is right, up, and towards the viewer in the file become x, y and z. A file that

@@ -67,12 +67,27 @@ Result<TextureRef> read_ref(GltfReader& reader, Pictures& pictures,
     if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) ref.filter = scene::Filter::nearest;
   }
   apply_transform(ref, info.extensions);
-  if (ref.uv_set > 1) {
-    reader.warn("{} uses TEXCOORD_{}, which is not read; TEXCOORD_0 is used instead", user,
-                ref.uv_set);
-    ref.uv_set = 0;
-  }
   return ref;
+}
+
+/// A mesh has two sets of texture coordinates, the second of which is TEXCOORD_1: lightmaps want
+/// it. The first is TEXCOORD_0 or, where textures look at another one, that: luxel's own files have
+/// their second set there. Returns its number and makes the textures look at these two.
+int choose_first_set(GltfReader& reader, const std::string& user, scene::Material& m) {
+  std::optional<int> first;
+  bool is_odd = false;
+  for (TextureRef* ref : scene::textures_of(m)) {
+    if (ref->texture == scene::kNone || ref->uv_set == 1) continue;
+    is_odd |= first.value_or(ref->uv_set) != ref->uv_set;
+    if (!first) first = ref->uv_set;
+    ref->uv_set = 0;
+  }
+  if (is_odd)
+    reader.warn(
+        "{} uses more than two sets of texture coordinates; TEXCOORD_1 and TEXCOORD_{} are "
+        "read",
+        user, *first);
+  return first.value_or(0);
 }
 
 bool is_lost(const tinygltf::TextureInfo& info, const TextureRef& ref) {
@@ -278,6 +293,8 @@ Status read_materials(GltfReader& reader) {
   Pictures pictures{reader.source, reader.out};
   for (size_t i = 0; i < reader.model.materials.size(); ++i) {
     LUXEL_TRY(scene::Material material, read_material(reader, pictures, i));
+    const std::string user = label("material", i, material.name);
+    reader.first_set.push_back(choose_first_set(reader, user, material));
     reader.out.scene.materials.push_back(std::move(material));
   }
   warn_about_metals(reader);

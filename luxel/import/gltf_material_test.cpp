@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 /// The square with texture coordinates in both sets and this material.
@@ -345,6 +346,27 @@ TEST(GltfMaterial, AMissingTextureIsSaidForEachUse) {
   EXPECT_THAT(imported->warnings,
               Contains(HasSubstr("the texture of material 1 (brick) is leaves.png, which is "
                                  "missing")));
+}
+
+// Some programs keep a set for textures beyond that of the lightmap.
+TEST(GltfMaterial, TheSetThatTexturesLookAtIsRead) {
+  Gltf gltf = square_with_texture({{"source", 0}}, {png_of(4, 1, {255, 0, 0, 255})});
+  const int set = gltf.floats({0.25f, 0.5f, 1, 0.5f, 1, 1, 0.25f, 1}, "VEC2", 2);
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_3"] = set;
+  auto& material = gltf.json["materials"][0];
+  material["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 3;
+  const auto imported = import_glb(gltf);
+  const scene::Scene scene = scene_of(imported);
+  EXPECT_THAT(imported->warnings, IsEmpty());
+  EXPECT_EQ(scene.materials[0].base_color_texture.uv_set, 0);
+  EXPECT_EQ(scene.meshes[0].uv0, (std::vector<Vec2>{{0.25f, 0.5f}, {1, 0.5f}, {1, 1}, {0.25f, 1}}));
+  EXPECT_EQ(scene.meshes[0].uv1[2], (Vec2{1, 1})) << "the lightmap's";
+  // A mesh has no third set.
+  material["emissiveFactor"] = {1, 1, 1};
+  material["emissiveTexture"] = {{"index", 0}, {"texCoord", 0}};
+  EXPECT_THAT(import_glb(gltf)->warnings,
+              Contains(HasSubstr("material 0 (brick) uses more than two sets of texture "
+                                 "coordinates; TEXCOORD_1 and TEXCOORD_3 are read")));
 }
 
 nlohmann::json glossy(nlohmann::json values) {

@@ -7,8 +7,8 @@ namespace luxel::import {
 namespace {
 
 using Triangle = std::array<uint32_t, 3>;
-/// Attributes of a primitive, and those of its morph targets.
-using Sources = std::pair<Attributes, std::vector<Attributes>>;
+/// Attributes of a primitive, those of its morph targets, and its material's GltfReader::first_set.
+using Sources = std::tuple<Attributes, std::vector<Attributes>, int>;
 
 std::vector<Vec2> to_vec2(const Numbers& numbers) {
   std::vector<Vec2> values(numbers.count());
@@ -18,14 +18,15 @@ std::vector<Vec2> to_vec2(const Numbers& numbers) {
 }
 
 Result<Vertices> read_vertices(const GltfReader& reader, const Attributes& attributes,
-                               const std::string& where) {
+                               int first_set, const std::string& where) {
   Vertices v;
   LUXEL_TRY(const Numbers positions,
             read_numbers(reader.model, attributes.at("POSITION"), {3}, where + ", POSITION"));
   v.positions = to_vec3(positions);
   const size_t n = v.positions.size();
   LUXEL_TRY(const Numbers normals, read_attribute(reader, attributes, "NORMAL", {3}, n, where));
-  LUXEL_TRY(const Numbers uv0, read_attribute(reader, attributes, "TEXCOORD_0", {2}, n, where));
+  const std::string first = fmt::format("TEXCOORD_{}", first_set);
+  LUXEL_TRY(const Numbers uv0, read_attribute(reader, attributes, first.c_str(), {2}, n, where));
   LUXEL_TRY(const Numbers uv1, read_attribute(reader, attributes, "TEXCOORD_1", {2}, n, where));
   LUXEL_TRY(const Numbers colors, read_attribute(reader, attributes, "COLOR_0", {3, 4}, n, where));
   v.normals = to_vec3(normals);
@@ -175,14 +176,16 @@ Status add_primitive(MeshBuilder& builder, const tinygltf::Primitive& primitive,
   scene::Mesh& mesh = builder.mesh;
   uint32_t start = uint32_t(mesh.positions.size());
   std::vector<Triangle> triangles;
-  const Sources sources{primitive.attributes, primitive.targets};
+  const int first_set =
+      primitive.material < 0 ? 0 : builder.reader.first_set[size_t(primitive.material)];
+  const Sources sources{primitive.attributes, primitive.targets, first_set};
   const auto known = builder.taken.find(sources);
   if (known != builder.taken.end()) {
     start = known->second.start;
     LUXEL_TRY(triangles, read_triangles(builder.reader, primitive, known->second.count, where));
     turn_mirrored(known->second.mirrored, triangles);
   } else {
-    LUXEL_TRY(Vertices v, read_vertices(builder.reader, primitive.attributes, where));
+    LUXEL_TRY(Vertices v, read_vertices(builder.reader, primitive.attributes, first_set, where));
     LUXEL_TRY_STATUS(apply_pose(builder.reader, primitive, builder.pose, where, v));
     const size_t count = v.positions.size();
     if (mesh.positions.size() + 3 * count > UINT32_MAX)

@@ -21,6 +21,8 @@ struct GltfReader {
   Imported& out;
   std::vector<Mat34> world{};                ///< world from node, of every node
   uint32_t default_material = scene::kNone;  ///< made when a primitive first needs it
+  /// The set of texture coordinates that becomes a mesh's first one, for each material of the file.
+  std::vector<int> first_set{};
 
   template <class... Args>
   void warn(fmt::format_string<Args...> text, Args&&... args) {

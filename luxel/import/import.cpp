@@ -21,28 +21,30 @@ Result<Imported> read_scene(const SourceFile& source) {
   return read_with_assimp(source);
 }
 
-/// Whether an .obj file has smoothing groups, and all of them are off: `s off`, `s 0`.
-bool asks_for_facets(const SourceFile& source) {
-  bool off = false;
-  std::string_view text = text_of(source.bytes);
-  for (ObjLine line; next_obj_line(text, line);) {
-    std::string_view rest = line.text;
-    if (next_word(rest) != "s") continue;
-    const std::string_view group = next_word(rest);
-    off = group == "off" || group == "0";
-    if (!off) return false;
-  }
-  return off;
+/// The crease angle for a file [degrees]. OBJ, PLY and STL leave open how a mesh without
+/// normals looks, and such files are mostly of curved things; glTF says that it is flat [glTF 2.0,
+/// section 3.7.2.1].
+float crease_deg(const SourceFile& source, const Imported& imported, const ImportParams& params) {
+  if (params.smooth_normals_deg) return *params.smooth_normals_deg;
+  for (const char* open : {".obj", ".ply", ".stl"})
+    if (source.extension == open && !imported.is_smoothed) return kUsualCreaseDeg;
+  return 0;
 }
 
-/// The crease angle for a file [degrees]. OBJ and PLY leave open how a mesh without normals looks,
-/// and such files are mostly of curved things; glTF says that it is flat [glTF 2.0, section
-/// 3.7.2.1].
-float crease_deg(const SourceFile& source, const ImportParams& params) {
-  if (params.smooth_normals_deg) return *params.smooth_normals_deg;
-  const bool is_obj = source.extension == ".obj";
-  if (!is_obj && source.extension != ".ply") return 0;
-  return is_obj && asks_for_facets(source) ? 0 : kUsualCreaseDeg;
+/// World from the coordinates of a file whose format states neither axes nor unit. Errors: it
+/// states them, and `params` do.
+Result<Mat34> world_from_file(const SourceFile& source, const ImportParams& params) {
+  if (!params.up && !params.unit_m) return Mat34{};
+  for (const char* stating : {".gltf", ".glb", ".fbx", ".dae", ".zae"})
+    if (source.extension == stating)
+      return fail(
+          ErrorCode::bad_setting,
+          "{}: {} files state their unit and the axis that points up; leave --unit and --up "
+          "out",
+          source.name, stating);
+  const float unit = params.unit_m.value_or(1);
+  if (params.up != Up::z) return Mat34{{{{unit, 0, 0, 0}, {0, unit, 0, 0}, {0, 0, unit, 0}}}};
+  return Mat34{{{{unit, 0, 0, 0}, {0, 0, unit, 0}, {0, -unit, 0, 0}}}};
 }
 
 /// What of the instances that were read validation has kept: it drops some, and changes none.
@@ -77,8 +79,10 @@ void make_names_utf8(Imported& imported) {
   all(scene.lights), all(scene.cameras);
 }
 
-Result<Imported> read_checked(const SourceFile& source, const ImportParams& params) {
+Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
   LUXEL_TRY_STATUS(check_extension(source));
+  LUXEL_TRY(source.world_from_file, world_from_file(source, params));
+  source.smooths_by_groups = !params.smooth_normals_deg;
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
   // Third-party readers throw; nothing of it leaves this room.
   try {
@@ -89,7 +93,7 @@ Result<Imported> read_checked(const SourceFile& source, const ImportParams& para
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     keep_nodes(read, imported);
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
-    const float crease_rad = crease_deg(source, params) * kPi / 180;
+    const float crease_rad = crease_deg(source, imported, params) * kPi / 180;
     for (scene::Mesh& mesh : imported.scene.meshes) scene::smooth_normals(mesh, crease_rad);
     scene::link_sides(imported.scene);
     return imported;

@@ -21,19 +21,26 @@ struct Imported {
   std::string about_lost_lights;
   /// The node of a glTF file that each instance and each light comes from. Empty for other files.
   std::vector<uint32_t> node_of_instance, node_of_light;
+  bool is_smoothed = false;  ///< by the smoothing groups of an .obj file
 };
+
+enum class Up : uint8_t { y, z };
 
 /// How a file is read.
 struct ImportParams {
   /// Crease angle of smooth normals for meshes without normals [degrees], 0 to 180; 0: they are
-  /// flat. Not set: kUsualCreaseDeg for .ply, and for .obj unless its smoothing groups are all off;
-  /// flat for everything else, as glTF demands.
+  /// flat. Not set: kUsualCreaseDeg for .ply, .stl and .obj, unless that states smoothing groups,
+  /// which are followed then; flat for everything else, as glTF demands.
   std::optional<float> smooth_normals_deg;
   /// Folders besides the scene's own in which files may lie that the scene names (scene_files.h).
   std::vector<std::filesystem::path> search_paths;
   bool trust_paths = false;  ///< files that the scene names may lie anywhere
+  /// For formats that state neither (OBJ, PLY, STL, .x, ...): the axis that points up, and metres
+  /// per unit. Not set: Y, metres. Set for another format: an error (bad_setting).
+  std::optional<Up> up{};
+  std::optional<float> unit_m{};
 };
-inline constexpr float kUsualCreaseDeg = 30;
+inline constexpr float kUsualCreaseDeg = 60;
 
 /// Reads .gltf and .glb with tinygltf, .obj with tinyobjloader, everything else that Assimp knows
 /// (.x, .fbx, .dae, .ply, ...) through Assimp. Errors say file, field, value and what to do.

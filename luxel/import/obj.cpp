@@ -11,6 +11,7 @@
 #include "luxel/import/obj_text.h"
 #include "luxel/import/pictures.h"
 #include "luxel/import/polygon.h"
+#include "luxel/scene/smooth_normals.h"
 
 namespace luxel::import {
 namespace {
@@ -149,6 +150,7 @@ struct CornerHash {
 struct Part {
   scene::Mesh mesh;
   std::unordered_map<Corner, uint32_t, CornerHash> vertex;
+  std::vector<uint32_t> smoothing;  ///< of each triangle
   bool has_normals = false, has_uv = false;
 };
 
@@ -210,6 +212,7 @@ void append_face(const Found& found, size_t number, uint32_t material, const Obj
     const uint32_t first = vertex(a), second = vertex(b), third = vertex(c);
     part.mesh.triangles.push_back({first, second, third});
     part.mesh.triangle_material.push_back(material);
+    part.smoothing.push_back(in.states[face.state].smoothing);
   }
 }
 
@@ -228,8 +231,10 @@ void append_groups(const Found& found, Reading& reading, OddFaces& odd) {
     if (!parts[g].has_normals) mesh.normals.clear();
     if (!parts[g].has_uv) mesh.uv0.clear();
     join_identical_vertices(mesh);
+    if (reading.out.is_smoothed) scene::smooth_normals(mesh, parts[g].smoothing);
     mesh.name = in.groups[g].empty() ? reading.source.path.stem().string() : in.groups[g];
-    scene.instances.push_back({mesh.name, uint32_t(scene.meshes.size()), {}});
+    scene.instances.push_back(
+        {mesh.name, uint32_t(scene.meshes.size()), reading.source.world_from_file});
     scene.meshes.push_back(std::move(mesh));
     parts[g] = {};
   }
@@ -266,6 +271,7 @@ Result<Imported> read_obj(const SourceFile& source) {
   const Found found = read_text(in);
   Reading reading{source, in, out, {source, out}};
   LUXEL_TRY_STATUS(read_materials(found, reading));
+  out.is_smoothed = in.states_smoothing && source.smooths_by_groups;
   OddFaces odd;
   append_groups(found, reading, odd);
   warn_of(odd, source, out.warnings);

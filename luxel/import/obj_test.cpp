@@ -52,7 +52,7 @@ Result<Imported> import_fold(const std::string& before, std::optional<float> cre
   return import_scene(folder.write("a.obj", kFold + before + kFoldFaces), params);
 }
 
-// OBJ does not say how a mesh without normals looks. `s off` does; groups that are on are no news.
+// OBJ does not say how a mesh without normals looks, unless it states smoothing groups.
 TEST(Obj, WithoutNormalsIsSmoothUnlessItsSmoothingGroupsAreOff) {
   const Vec3 mean = normalize(normalize(Vec3{0, 1, 0}) + normalize(Vec3{-0.2f, 1, 0}));
   for (const char* before : {"", "s 1\n", "s off\ns 2\n"}) {
@@ -62,6 +62,22 @@ TEST(Obj, WithoutNormalsIsSmoothUnlessItsSmoothingGroupsAreOff) {
   }
   for (const char* before : {"s off\n", "s 0\n"})
     EXPECT_TRUE(scene_of(import_fold(before)).meshes[0].normals.empty()) << before;
+}
+
+TEST(Obj, SmoothingGroupsAreFollowed) {
+  const std::string corner = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 -1 0\nv 0 -1 1\n";
+  const auto normals = [&](const std::string& first, const std::string& second) {
+    return scene_of(import_text("a.obj", corner + first + "f 1 2 3 4\n" + second + "f 2 1 5 6\n"))
+        .meshes[0]
+        .normals;
+  };
+  EXPECT_TRUE(normals("", "").empty()) << "90 degrees are sharp where nothing is said";
+  EXPECT_TRUE(normals("s 1\n", "s 2\n").empty());
+  EXPECT_TRUE(normals("", "s 1\n").empty()) << "off until it is on";
+  EXPECT_TRUE(normals("s 3\n", "s off\n").empty());
+  const std::vector<Vec3> round = normals("s 3 # round\n", "");
+  ASSERT_EQ(round.size(), 6u);
+  expect_near(round[0], normalize(Vec3{-1, 1, 0}), 1e-5f);
 }
 
 TEST(Obj, WithoutNormalsTakesTheCreaseAngleThatWasAskedFor) {

@@ -90,7 +90,7 @@ Status check_line(const ObjLine& line, const SourceFile& source, Scan& scan, Mtl
                   std::vector<std::string>& warnings) {
   std::string_view rest = line.text;
   const std::string_view keyword = next_word(rest);
-  scan.changes += keyword == "o" || keyword == "g" || keyword == "usemtl";
+  scan.changes += keyword == "o" || keyword == "g" || keyword == "s" || keyword == "usemtl";
   scan.free_form += keyword == kFreeForm;
   if (keyword == "mtllib") add_libraries(rest, source, library, warnings);
   const bool is_v = keyword == "v", is_vt = keyword == "vt", is_vn = keyword == "vn";
@@ -188,6 +188,10 @@ void put_state(std::string_view keyword, std::string_view rest, Writing& writing
     state.material = writing.materials.of(std::string(without_quotes(name)));
     writing.out.materials.resize(writing.materials.number.size());
     writing.out.materials[state.material] = without_quotes(name);
+  } else if (keyword == "s") {
+    state.smoothing = 0;  // "off"
+    std::from_chars(name.data(), name.data() + name.size(), state.smoothing);
+    writing.out.states_smoothing = true;
   } else {
     if (keyword == "o") writing.object = name;
     writing.group = keyword == "g" ? name : std::string();
@@ -211,7 +215,7 @@ void put_line(const ObjLine& line, Writing& writing) {
     put_numbers("vn", words_before_comment(rest), 3, writing.out.text);
   } else if (is_face(keyword)) {
     put_face(words_before_comment(rest), line.number, writing);
-  } else if (keyword == "o" || keyword == "g" || keyword == "usemtl") {
+  } else if (keyword == "o" || keyword == "g" || keyword == "s" || keyword == "usemtl") {
     put_state(keyword, rest, writing);
   }
 }

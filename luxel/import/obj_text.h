@@ -18,8 +18,9 @@ struct ObjCounts {
 
 /// Faces of one state have these in common; the text has a line "g N" before the faces of state N.
 struct ObjState {
-  uint32_t group = 0;     ///< in ObjText::groups
-  uint32_t material = 0;  ///< in ObjText::materials
+  uint32_t group = 0;      ///< in ObjText::groups
+  uint32_t material = 0;   ///< in ObjText::materials
+  uint32_t smoothing = 0;  ///< what `s` says; 0: off
 };
 
 struct ObjText {
@@ -31,6 +32,7 @@ struct ObjText {
   std::vector<Rgb> colors;             ///< of each vertex; empty: none has one
   std::vector<uint32_t> lines;         ///< of each face
   MtlLibrary library;                  ///< what `mtllib` says
+  bool states_smoothing = false;       ///< there is an `s`
 };
 
 /// Errors: a number that is none or not finite, an index out of range, no faces, memory.

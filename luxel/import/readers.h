@@ -22,6 +22,8 @@ struct SourceFile {
   SceneFiles files;       ///< where files that it names may lie
   ReadingMemory& memory;  ///< what is left for reading it
   std::vector<std::byte> bytes;
+  Mat34 world_from_file{};        ///< for formats that state neither unit nor axes
+  bool smooths_by_groups = true;  ///< false: by an angle that was asked for
 };
 
 /// An error that lists what can be read when this is not among it.

@@ -79,15 +79,16 @@ struct Material {
   float sharpness = 20;   ///< its exponent n, >= 0
 };
 
-/// Everything that a material looks up.
-inline std::array<const TextureRef*, 7> textures_of(const Material& m) {
-  return {&m.base_color_texture,
-          &m.metallic_texture,
-          &m.emission_texture,
-          &m.normal_texture,
-          &m.transmission_texture,
-          &m.diffuse_transmission_texture,
-          &m.diffuse_transmission_color_texture};
+/// Everything that a material, constant or not, looks up.
+template <class AnyMaterial>
+auto textures_of(AnyMaterial& m) {
+  return std::array{&m.base_color_texture,
+                    &m.metallic_texture,
+                    &m.emission_texture,
+                    &m.normal_texture,
+                    &m.transmission_texture,
+                    &m.diffuse_transmission_texture,
+                    &m.diffuse_transmission_color_texture};
 }
 
 /// Indexed triangles. Attribute arrays are either empty or as long as `positions`.

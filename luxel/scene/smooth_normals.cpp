@@ -4,6 +4,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "luxel/base/check.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/scene/position_numbers.h"
 
@@ -59,11 +60,19 @@ DVec3 corner_of(const Mesh& mesh, uint32_t corner) {
   return to_double(mesh.positions[mesh.triangles[corner / 3][corner % 3]]);
 }
 
-std::vector<DVec3> face_normals(const Mesh& mesh) {
-  std::vector<DVec3> out(mesh.triangles.size());
+/// A triangle's unit normal, 0 where it has no area, and that area.
+struct Face {
+  DVec3 normal;
+  double area = 0;
+};
+
+std::vector<Face> faces_of(const Mesh& mesh) {
+  std::vector<Face> out(mesh.triangles.size());
   for (uint32_t t = 0; t < out.size(); ++t) {
     const DVec3 a = corner_of(mesh, 3 * t);
-    out[t] = normalize(cross(corner_of(mesh, 3 * t + 1) - a, corner_of(mesh, 3 * t + 2) - a));
+    const DVec3 twice = cross(corner_of(mesh, 3 * t + 1) - a, corner_of(mesh, 3 * t + 2) - a);
+    const double area = length(twice) / 2;
+    if (area > 0) out[t] = {normalize(twice), area};
   }
   return out;
 }
@@ -77,18 +86,17 @@ double angle_at(const Mesh& mesh, uint32_t corner) {
   return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
 }
 
-CornerSets corners_that_share(const Mesh& mesh, std::span<const DVec3> normals, float crease_rad) {
+/// `share` tells of two triangles with an edge in common whether they share its normals.
+template <class Share>
+CornerSets corners_that_share(const Mesh& mesh, const Share& share) {
   CornerSets sets(3 * mesh.triangles.size());
   const std::vector<HalfEdge> edges = half_edges(mesh, position_numbers(mesh.positions));
-  // A fold of just the crease angle is smooth, also when rounding has made it a little sharper.
-  const double least_cosine = std::cos(double(crease_rad)) - 1e-6;
   for (size_t i = 0; i < edges.size();) {
     size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
       ++end;
     const HalfEdge &a = edges[i], &b = edges[end - 1];
-    if (end - i == 2 && a.rises != b.rises &&
-        dot(normals[a.at_low / 3], normals[b.at_low / 3]) >= least_cosine) {
+    if (end - i == 2 && a.rises != b.rises && share(a.at_low / 3, b.at_low / 3)) {
       sets.join(a.at_low, b.at_low);
       sets.join(a.at_high, b.at_high);
     }
@@ -98,14 +106,16 @@ CornerSets corners_that_share(const Mesh& mesh, std::span<const DVec3> normals, 
 }
 
 /// A unit normal for each corner, the same for all of a set.
-std::vector<DVec3> corner_normals(const Mesh& mesh, std::span<const DVec3> face, CornerSets& sets) {
+std::vector<DVec3> corner_normals(const Mesh& mesh, std::span<const Face> face, CornerSets& sets) {
   std::vector<DVec3> sum(3 * mesh.triangles.size());
-  for (uint32_t c = 0; c < sum.size(); ++c) sum[sets.find(c)] += face[c / 3] * angle_at(mesh, c);
+  for (uint32_t c = 0; c < sum.size(); ++c)
+    if (const auto& [normal, area] = face[c / 3]; area > 0)
+      sum[sets.find(c)] += normal * (angle_at(mesh, c) * area);
   std::vector<DVec3> out(sum.size());
   for (uint32_t c = 0; c < sum.size(); ++c) {
     const DVec3 n = sum[sets.find(c)];
     // Triangles that face all ways, as around the tip of a needle, leave none.
-    out[c] = length(n) > 1e-9 ? normalize(n) : face[c / 3];
+    out[c] = length(n) > 1e-9 * face[c / 3].area ? normalize(n) : face[c / 3].normal;
   }
   return out;
 }
@@ -123,15 +133,12 @@ uint32_t repeat_vertex(Mesh& mesh, uint32_t vertex) {
   return uint32_t(mesh.positions.size() - 1);
 }
 
-}  // namespace
-
-void smooth_normals(Mesh& mesh, float crease_rad) {
-  if (!mesh.normals.empty() || !(crease_rad > 0)) return;
-  const std::vector<DVec3> face = face_normals(mesh);
-  CornerSets sets = corners_that_share(mesh, face, crease_rad);
+/// Gives each set of corners its normal, and vertices of their own where a vertex has several sets.
+void set_normals(Mesh& mesh, std::span<const Face> face, CornerSets& sets) {
   const std::vector<DVec3> normal = corner_normals(mesh, face, sets);
   bool bent = false;
-  for (uint32_t c = 0; c < normal.size(); ++c) bent |= length(normal[c] - face[c / 3]) > kFlat;
+  for (uint32_t c = 0; c < normal.size(); ++c)
+    bent |= length(normal[c] - face[c / 3].normal) > kFlat;
   if (!bent) return;
 
   mesh.normals.resize(mesh.positions.size());
@@ -154,6 +161,30 @@ void smooth_normals(Mesh& mesh, float crease_rad) {
   // Vertices of no triangle: any normal does.
   for (Vec3& n : mesh.normals)
     if (!(dot(n, n) > 0)) n = {0, 1, 0};
+}
+
+}  // namespace
+
+void smooth_normals(Mesh& mesh, float crease_rad) {
+  if (!mesh.normals.empty() || !(crease_rad > 0)) return;
+  const std::vector<Face> face = faces_of(mesh);
+  // A fold of just the crease angle is smooth, also when rounding has made it a little sharper.
+  const double least_cosine = std::cos(double(crease_rad)) - 1e-6;
+  CornerSets sets = corners_that_share(mesh, [&](uint32_t a, uint32_t b) {
+    return face[a].area > 0 && face[b].area > 0 &&
+           dot(face[a].normal, face[b].normal) >= least_cosine;
+  });
+  set_normals(mesh, face, sets);
+}
+
+void smooth_normals(Mesh& mesh, std::span<const uint32_t> group) {
+  LUXEL_CHECK(group.size() == mesh.triangles.size());
+  if (!mesh.normals.empty()) return;
+  const std::vector<Face> face = faces_of(mesh);
+  CornerSets sets = corners_that_share(mesh, [&](uint32_t a, uint32_t b) {
+    return face[a].area > 0 && face[b].area > 0 && group[a] == group[b] && group[a] != 0;
+  });
+  set_normals(mesh, face, sets);
 }
 
 }  // namespace luxel::scene

@@ -153,6 +153,46 @@ TEST(SmoothNormals, KeepEdgesOfOtherThanTwoLikeSidesSharp) {
   EXPECT_TRUE(third.normals.empty());
 }
 
+// At the first end of the edge both triangles have a right angle; at the other one 45 degrees and
+// that of a tenth.
+TEST(SmoothNormals, AreWeightedByAreaAsWell) {
+  Mesh mesh = fold(false, 0);
+  mesh.positions[3] = mesh.positions[3] * 0.1f;
+  smooth_normals(mesh, 60 * kOneDegree);
+  const float c = std::cos(10 * kOneDegree), s = std::sin(10 * kOneDegree);
+  const Vec3 wide{0, 1, 0}, narrow{-s, c, 0};
+  EXPECT_LT(length(mesh.normals[0] - normalize(wide * 0.5f + narrow * 0.05f)), kRounding);
+  EXPECT_LT(length(mesh.normals[1] -
+                   normalize(wide * (0.5f * kPi / 4) + narrow * (0.05f * std::atan(0.1f)))),
+            kRounding);
+}
+
+TEST(SmoothNormals, FollowGroupsHoweverTheMeshBends) {
+  const auto smoothed = [](std::vector<uint32_t> two_per_face) {
+    Mesh mesh = shared_cube();
+    std::vector<uint32_t> group;
+    for (const uint32_t g : two_per_face) group.insert(group.end(), {g, g});
+    smooth_normals(mesh, group);
+    return mesh;
+  };
+  EXPECT_LT(largest_angle_to_radius(smoothed({1, 1, 1, 1, 1, 1})), kRounding);
+  EXPECT_TRUE(smoothed({0, 0, 0, 0, 0, 0}).normals.empty()) << "off";
+  EXPECT_TRUE(smoothed({1, 2, 3, 4, 5, 6}).normals.empty());
+  // Of the faces y = -1 and x = 1 alone the edge between them is smooth: 2 of 24 corners share.
+  const Mesh two = smoothed({0, 0, 7, 0, 0, 7});
+  EXPECT_EQ(two.positions.size(), 22u);
+}
+
+TEST(SmoothNormals, OfATriangleWithoutAreaHurtNobody) {
+  Mesh mesh = fold(false, 0);
+  mesh.triangles.push_back({0, 1, 1});
+  mesh.triangle_material.push_back(0);
+  smooth_normals(mesh, 60 * kOneDegree);
+  const Vec3 mean =
+      normalize(Vec3{0, 1, 0} + Vec3{-std::sin(10 * kOneDegree), std::cos(10 * kOneDegree), 0});
+  EXPECT_LT(length(mesh.normals[0] - mean), kRounding);
+}
+
 TEST(SmoothNormals, LeaveTheNormalsOfAFileAlone) {
   Mesh mesh = sphere("ball", 1, 16, 8, 0);
   const std::vector<Vec3> before = mesh.normals;

@@ -43,10 +43,24 @@ Options<ImportParams> import_options() {
   return {Rows<ImportParams>::number(
               "--smooth-normals", &ImportParams::smooth_normals_deg, {0, 180},
               fmt::format("For meshes without normals: smooth across edges that bend by at most "
-                          "this angle; 0: flat; default: {} for OBJ and PLY, else flat",
+                          "this angle; 0: flat; default: {} for OBJ, PLY and STL, else flat",
                           import::kUsualCreaseDeg))
               .key_is("smooth_normals_deg")
               .unit("DEG")
+              .leaves(Changes::scene),
+          Rows<ImportParams>::choice(
+              "--up", &ImportParams::up, {{"y", import::Up::y}, {"z", import::Up::z}},
+              "Axis that points up in a file that does not say (OBJ, PLY, STL, ...); default: y")
+              .leaves(Changes::scene),
+          Rows<ImportParams>::choice("--unit", &ImportParams::unit_m,
+                                     {{"mm", 0.001f},
+                                      {"cm", 0.01f},
+                                      {"m", 1.0f},
+                                      {"km", 1000.0f},
+                                      {"in", 0.0254f},
+                                      {"ft", 0.3048f}},
+                                     "Unit of lengths in a file that does not say (OBJ, PLY, STL, "
+                                     "...); default: m")
               .leaves(Changes::scene),
           search_path_option(),
           Rows<ImportParams>::toggle(

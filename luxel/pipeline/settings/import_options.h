@@ -6,7 +6,7 @@
 
 namespace luxel::pipeline {
 
-/// --smooth-normals, --search-path, --trust-paths.
+/// --smooth-normals, --up, --unit, --search-path, --trust-paths.
 Options<import::ImportParams> import_options();
 
 }  // namespace luxel::pipeline

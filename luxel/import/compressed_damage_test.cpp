@@ -61,9 +61,11 @@ TEST(CompressedDamage, DracoByEdgebreakerAndInOrder) {
     }
 }
 
-TEST(CompressedDamage, MeshoptInEveryMode) {
+class MeshoptDamage : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(MeshoptDamage, InEveryMode) {
   const Surface surface = torus(3);
-  MeshoptGltf m = meshopt_gltf(surface);
+  MeshoptGltf m = meshopt_gltf(surface, GetParam());
   const size_t n = surface.vertices();
   std::vector<uint32_t> words(3 * n);
   meshopt_encodeFilterExp(words.data(), n, 12, 15, surface.positions.data());
@@ -76,12 +78,16 @@ TEST(CompressedDamage, MeshoptInEveryMode) {
   for (size_t view = 0; view < m.gltf.json["bufferViews"].size(); ++view)
     for (size_t length = 0;; length += 1 + length / 16) {
       MeshoptGltf cut = m;
-      auto& extension = cut.gltf.json["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+      auto& extension = cut.gltf.json["bufferViews"][view]["extensions"][m.name];
       if (length >= extension["byteLength"]) break;
       extension["byteLength"] = length;
       EXPECT_FALSE(survives(cut.glb())) << "view " << view << ", " << length;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Extensions, MeshoptDamage,
+                         ::testing::Values("EXT_meshopt_compression", "KHR_meshopt_compression"),
+                         [](const auto& tested) { return std::string(tested.param, 3); });
 
 // Digits of the document are where counts, strides, ids and offsets stand.
 TEST(CompressedDamage, NumbersOfTheDocument) {

@@ -113,10 +113,27 @@ inline Gltf draco_gltf(const DracoBytes& encoded) {
   return gltf;
 }
 
-/// Adds views that EXT_meshopt_compression fills, with a placeholder for their decoded bytes.
+/// Rows as a stream of KHR_meshopt_compression's format 1, every delta a whole byte.
+inline std::string meshopt_format_1(const std::string& rows, size_t stride) {
+  std::string out = "\xa1", before(stride, '\0');
+  const size_t count = rows.size() / stride, most = std::min<size_t>(8192 / stride / 16 * 16, 256);
+  for (size_t at = 0; at < count; at += most) {
+    out.append(stride / 4, '\xff');
+    for (size_t k = 0; k < stride; ++k)
+      for (size_t i = at; i < std::min(at + most, count); ++i) {
+        const auto delta = uint8_t(rows[i * stride + k] - before[k]);
+        out += char(delta < 128 ? 2 * delta : 2 * (255 - delta) + 1);
+        before[k] = rows[i * stride + k];
+      }
+  }
+  return out + std::string(std::max<size_t>(24, stride + stride / 4), '\0');
+}
+
+/// Adds views that meshopt fills, with a placeholder for their decoded bytes.
 struct MeshoptGltf {
   Gltf gltf;
   size_t decoded_bytes = 0;
+  const char* name = "EXT_meshopt_compression";  ///< KHR's attributes are of format 1
 
   /// Returns the view's index.
   int view(const std::string& compressed, size_t stride, size_t count, const char* mode,
@@ -131,7 +148,7 @@ struct MeshoptGltf {
     view = {{"buffer", 1},
             {"byteOffset", decoded_bytes},
             {"byteLength", stride * count},
-            {"extensions", {{"EXT_meshopt_compression", extension}}}};
+            {"extensions", {{name, extension}}}};
     if (std::string(mode) == "ATTRIBUTES") view["byteStride"] = stride;
     decoded_bytes += stride * count;
     return at;
@@ -139,6 +156,8 @@ struct MeshoptGltf {
   template <class T>
   int attributes(const std::vector<T>& rows, size_t stride, const char* filter = nullptr) {
     const size_t count = rows.size() * sizeof(T) / stride;
+    if (name[0] == 'K')
+      return view(meshopt_format_1(bytes_of(rows), stride), stride, count, "ATTRIBUTES", filter);
     std::string bytes(meshopt_encodeVertexBufferBound(count, stride), '\0');
     bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()),
                                             bytes.size(), rows.data(), count, stride));
@@ -166,19 +185,21 @@ struct MeshoptGltf {
   /// Buffer 0 holds the compressed bytes; buffer 1 has none, and is marked as fallback or not.
   nlohmann::json buffers(bool marked) const {
     nlohmann::json placeholder = {{"byteLength", decoded_bytes}};
-    if (marked) placeholder["extensions"]["EXT_meshopt_compression"]["fallback"] = true;
+    if (marked) placeholder["extensions"][name]["fallback"] = true;
     return {{{"byteLength", (gltf.buffer.size() + 3) / 4 * 4}}, placeholder};
   }
   std::string glb(bool marked = true) const {
     Gltf whole = gltf;
-    whole.json["extensionsRequired"] = {"EXT_meshopt_compression"};
+    whole.json["extensionsRequired"] = {name};
     return whole.glb(buffers(marked));
   }
 };
 
 /// Positions as floats, normals as octahedra of 8 bits, indices as triangles.
-inline MeshoptGltf meshopt_gltf(const Surface& surface) {
+inline MeshoptGltf meshopt_gltf(const Surface& surface,
+                                const char* name = "EXT_meshopt_compression") {
   MeshoptGltf m;
+  m.name = name;
   const size_t n = surface.vertices();
   std::vector<float> four(4 * n);
   for (size_t i = 0; i < n; ++i) std::copy_n(&surface.normals[3 * i], 3, &four[4 * i]);

@@ -1,19 +1,20 @@
-// EXT_meshopt_compression: what its compressed views may say, and which buffers need no bytes.
-#include <array>
+// EXT_ and KHR_meshopt_compression: what compressed views may say, and which buffers need no bytes.
+#include <span>
 
 #include "luxel/import/gltf_check_steps.h"
 
 namespace luxel::import {
 namespace {
 
-constexpr char kMeshopt[] = "EXT_meshopt_compression";
+constexpr const char* kMeshopt[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+const char* extension_name(const MeshoptView& v) { return kMeshopt[v.khr ? 1 : 0]; }
 
 /// The position of a word in a list of words.
-template <size_t n>
-Result<size_t> choice(const Json& object, const char* key, const std::array<const char*, n>& words,
+Result<size_t> choice(const Json& object, const char* key, std::span<const char* const> words,
                       const std::string& where) {
   const auto value = object.find(key);
-  for (size_t i = 0; i < n; ++i)
+  for (size_t i = 0; i < words.size(); ++i)
     if (value != object.end() && *value == words[i]) return i;
   std::string all;
   for (const char* word : words) all += fmt::format("{}{}", all.empty() ? "" : ", ", word);
@@ -23,10 +24,11 @@ Result<size_t> choice(const Json& object, const char* key, const std::array<cons
 
 /// The most bytes that `length` compressed ones can become. Without this a short file could ask for
 /// any amount of memory, for decoders write where the caller has made room. Attributes: a byte
-/// stands for four groups of 16 bytes that do not change. Indices: at least a byte for each
-/// triangle, or for each index of a sequence. [EXT_meshopt_compression, appendix A]
+/// stands for four groups of 16 bytes that do not change, or in KHR's format 1 for four bytes of
+/// 256 elements. Indices: at least a byte for each triangle, or for each index of a sequence.
+/// [KHR_meshopt_compression, appendix A]
 uint64_t most_bytes(const MeshoptView& v) {
-  if (v.mode == MeshoptView::Mode::attributes) return 64 * v.length;
+  if (v.mode == MeshoptView::Mode::attributes) return (v.khr ? 1024 : 64) * v.length;
   return v.length * v.stride * (v.mode == MeshoptView::Mode::triangles ? 3 : 1);
 }
 
@@ -51,6 +53,8 @@ Status check_layout(const MeshoptView& v, const std::string& where) {
     return wrong_stride("4 or 8 for the filter OCTAHEDRAL");
   if (v.filter == Filter::quaternion && v.stride != 8)
     return wrong_stride("8 for the filter QUATERNION");
+  if (v.filter == Filter::color && v.stride != 4 && v.stride != 8)
+    return wrong_stride("4 or 8 for the filter COLOR");
   return {};
 }
 
@@ -80,9 +84,11 @@ Status check_sizes(const Json& document, const MeshoptView& v, const Json& view,
 }
 
 bool is_marked_fallback(const Json& buffer) {
-  static const Json::json_pointer kFallback(fmt::format("/extensions/{}/fallback", kMeshopt));
-  const Json value = buffer.contains(kFallback) ? buffer[kFallback] : Json(false);
-  return value.is_boolean() && value.get<bool>();
+  for (const char* name : kMeshopt) {
+    const Json::json_pointer fallback(fmt::format("/extensions/{}/fallback", name));
+    if (buffer.contains(fallback) && buffer[fallback] == true) return true;
+  }
+  return false;
 }
 
 /// Who uses a buffer: the first view that reads it plainly, the first that reads compressed bytes
@@ -117,22 +123,29 @@ std::vector<Use> uses_of_buffers(const Json& document) {
 
 Result<std::optional<MeshoptView>> meshopt_view_of(const Json& document, const Json& view,
                                                    const std::string& view_name) {
-  const std::string where = view_name + ", " + kMeshopt;
-  LUXEL_TRY(const Json* extension, extension_of(view, kMeshopt, view_name));
-  if (extension == nullptr) return std::nullopt;
+  LUXEL_TRY(const Json* const ext, extension_of(view, kMeshopt[0], view_name));
+  LUXEL_TRY(const Json* const khr, extension_of(view, kMeshopt[1], view_name));
+  if (ext == nullptr && khr == nullptr) return std::nullopt;
+  if (ext != nullptr && khr != nullptr)
+    return fail(ErrorCode::bad_input, "{}: it has both {} and {}, must have one", view_name,
+                kMeshopt[0], kMeshopt[1]);
   MeshoptView v;
+  v.khr = khr != nullptr;
+  const Json* const extension = v.khr ? khr : ext;
+  const std::string where = view_name + ", " + extension_name(v);
   LUXEL_TRY_STATUS(check_index(document, *extension, "buffer", "buffers", where));
   LUXEL_TRY(v.buffer, whole_number(*extension, "buffer", UINT64_MAX, where));
   LUXEL_TRY(v.offset, whole_number(*extension, "byteOffset", 0, where));
   LUXEL_TRY(v.length, whole_number(*extension, "byteLength", UINT64_MAX, where));
   LUXEL_TRY(v.stride, whole_number(*extension, "byteStride", UINT64_MAX, where));
   LUXEL_TRY(v.count, whole_number(*extension, "count", UINT64_MAX, where));
-  constexpr std::array kModes{"ATTRIBUTES", "TRIANGLES", "INDICES"};
-  constexpr std::array kFilters{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+  constexpr const char* kModes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
+  constexpr const char* kFilters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"};
   LUXEL_TRY(const size_t mode, choice(*extension, "mode", kModes, where));
   v.mode = MeshoptView::Mode(mode);
   if (extension->contains("filter")) {
-    LUXEL_TRY(const size_t filter, choice(*extension, "filter", kFilters, where));
+    LUXEL_TRY(const size_t filter,
+              choice(*extension, "filter", std::span(kFilters).first(v.khr ? 5 : 4), where));
     v.filter = MeshoptView::Filter(filter);
   }
   LUXEL_TRY_STATUS(check_layout(v, where));
@@ -158,7 +171,7 @@ Status check_meshopt(const Json& document, const std::string& file) {
       return fail(ErrorCode::unsupported,
                   "{}: {} lies in buffer view {}, which {} compresses; "
                   "export pictures as they are",
-                  file, name_of("image", i, images[i]), view, kMeshopt);
+                  file, name_of("image", i, images[i]), view, extension_name(*compressed));
   }
   // Buffers that are marked as fallback have bytes that no view needs.
   const std::vector<Use> uses = uses_of_buffers(document);

@@ -20,8 +20,8 @@ Status check_lists(const Json& document, const std::string& file);
 Status check_indices(const Json& document, const std::string& file);
 /// Views lie in their buffers, accessors in their views.
 Status check_ranges(const Json& document, const std::string& file);
-/// EXT_meshopt_compression: see meshopt_view_of(); no picture lies in a compressed view, nothing
-/// that is needed in a buffer marked as fallback.
+/// EXT_ and KHR_meshopt_compression: see meshopt_view_of(); no picture lies in a compressed view,
+/// nothing that is needed in a buffer marked as fallback.
 Status check_meshopt(const Json& document, const std::string& file);
 /// KHR_draco_mesh_compression: its view, attributes and mode are such as the extension allows.
 Status check_draco(const Json& document, const std::string& file);
@@ -47,10 +47,11 @@ Result<const Json*> extension_of(const Json& object, const char* name, const std
 Status check_index(const Json& document, const Json& holder, const char* key, const char* target,
                    const std::string& where);
 
-/// A view that EXT_meshopt_compression fills: where its compressed bytes lie and what they become.
+/// A view that meshopt fills: where its compressed bytes lie and what they become.
 struct MeshoptView {
   enum class Mode { attributes, triangles, indices };
-  enum class Filter { none, octahedral, quaternion, exponential };
+  enum class Filter { none, octahedral, quaternion, exponential, color };
+  bool khr = false;                             ///< KHR_meshopt_compression; else EXT_
   uint64_t buffer = 0, offset = 0, length = 0;  ///< compressed
   uint64_t stride = 0, count = 0;               ///< decoded
   Mode mode = Mode::attributes;
@@ -58,15 +59,15 @@ struct MeshoptView {
 };
 
 /// Nothing for a view without the extension. Errors: what the extension forbids
-/// [EXT_meshopt_compression, "JSON schema updates"]; compressed bytes that are not there, or too
-/// few for what they are said to become.
+/// [KHR_meshopt_compression, "JSON schema updates"]; both extensions on one view; compressed bytes
+/// that are not there, or too few for what they are said to become.
 Result<std::optional<MeshoptView>> meshopt_view_of(const Json& document, const Json& view,
                                                    const std::string& where);
 
 /// Whether KHR_draco_mesh_compression brings the primitive.
 bool is_draco(const Json& primitive);
 
-/// Buffers that hold nothing that is read, because EXT_meshopt_compression brings all of their
+/// Buffers that hold nothing that is read, because meshopt brings all of their
 /// views. Their bytes need not exist.
 std::vector<bool> placeholder_buffers(const Json& document);
 

@@ -23,6 +23,7 @@ constexpr std::string_view kSupported[] = {
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     // What cannot be decoded is said where a texture is needed: a normal map is not.
     "KHR_texture_basisu",
     "KHR_texture_transform",

@@ -138,7 +138,7 @@ Result<LoadedGltf> load_gltf(const SourceFile& source) {
   }
   LUXEL_TRY(tinygltf::Model model, load_model(source, text, glb));
   LUXEL_TRY_STATUS(check_buffers(model, document, is_placeholder, source.name));
-  LUXEL_TRY_STATUS(decode_meshopt(model, document, source.name));
+  LUXEL_TRY_STATUS(decode_meshopt(model, document, source));
   LUXEL_TRY_STATUS(decode_draco(model, document, source.name));
   convert_specular_glossiness(model);
   return LoadedGltf{std::move(document), std::move(model)};

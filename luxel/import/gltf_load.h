@@ -19,10 +19,10 @@ struct LoadedGltf {
 /// decode_draco(); a buffer that is not there.
 Result<LoadedGltf> load_gltf(const SourceFile& source);
 
-/// EXT_meshopt_compression: every compressed view of the model points at its decoded bytes after.
-/// The document has passed check_document(). Errors: damaged data, naming the view.
+/// EXT_ and KHR_meshopt_compression: every compressed view of the model points at its decoded bytes
+/// after. The document has passed check_document(). Errors: damaged data, naming the view; memory.
 Status decode_meshopt(tinygltf::Model& model, const nlohmann::json& document,
-                      const std::string& file);
+                      const SourceFile& source);
 
 /// KHR_draco_mesh_compression: every compressed primitive has accessors of its own after, with
 /// decoded bytes, and is a list of triangles. The document has passed check_document(). Errors:

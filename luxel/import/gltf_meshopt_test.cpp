@@ -1,6 +1,7 @@
-// EXT_meshopt_compression: what meshoptimizer's encoders made of a torus is the torus.
+// EXT_ and KHR_meshopt_compression: what the encoders made of a torus is the torus.
 #include <gmock/gmock.h>
 
+#include "luxel/base/process_memory.h"
 #include "luxel/import/compressed_test_files.h"
 #include "tests/support.h"
 
@@ -17,11 +18,63 @@ constexpr float kOctahedron8 = (1.7321f * 2.4495f + 1.7321f) / 2 / 127;
 
 TEST(GltfMeshopt, FloatsAreExactAndOctahedraNearly) {
   const Surface surface = torus(12);
-  for (const bool marked : {true, false}) {
-    const scene::Scene scene = scene_of(import_text("a.glb", meshopt_gltf(surface).glb(marked)));
-    ASSERT_EQ(scene.meshes.size(), 1u);
-    expect_surface(scene.meshes[0], surface, {0, kOctahedron8, 0});
-  }
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+    for (const bool marked : {true, false}) {
+      const std::string glb = meshopt_gltf(surface, name).glb(marked);
+      const scene::Scene scene = scene_of(import_text("a.glb", glb));
+      ASSERT_EQ(scene.meshes.size(), 1u);
+      expect_surface(scene.meshes[0], surface, {0, kOctahedron8, 0});
+    }
+}
+
+// Old files become new ones by their names alone; new streams are none of the old extension.
+TEST(GltfMeshopt, TheNewerExtensionReadsBothFormats) {
+  const Surface surface = torus(6);
+  const auto with_name = [&](const char* made_for, const char* name) {
+    MeshoptGltf m = meshopt_gltf(surface, made_for);
+    for (nlohmann::json& view : m.gltf.json["bufferViews"])
+      view["extensions"] = {{name, view["extensions"][made_for]}};
+    m.name = name;
+    return import_text("a.glb", m.glb());
+  };
+  expect_surface(
+      scene_of(with_name("EXT_meshopt_compression", "KHR_meshopt_compression")).meshes[0], surface,
+      {0, kOctahedron8, 0});
+  EXPECT_THAT(error_of(with_name("KHR_meshopt_compression", "EXT_meshopt_compression")),
+              HasSubstr("are damaged or are not 49 elements of 12 bytes"));
+}
+
+// White, then a colour of 8 bits whose luma is (200 + 2 * 50 + 100) / 4; alpha lacks its lowest
+// bit.
+TEST(GltfMeshopt, ColorFilter) {
+  MeshoptGltf m = meshopt_gltf(torus(3), "KHR_meshopt_compression");
+  std::string colors;
+  for (int i = 0; i < 16; ++i)
+    colors += i < 8 ? std::string{'\xff', 0, 0, '\xff'} : std::string{100, 50, -50, '\xff'};
+  const int c =
+      m.accessor(m.attributes(std::vector<char>(colors.begin(), colors.end()), 4, "COLOR"), 5121,
+                 16, "VEC4", true);
+  m.gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = c;
+  const scene::Scene scene = scene_of(import_text("a.glb", m.glb()));
+  ASSERT_EQ(scene.meshes.at(0).colors.size(), 16u);
+  for (size_t i = 0; i < 16; ++i)
+    expect_near(scene.meshes[0].colors[i],
+                i < 8 ? Vec3{1, 1, 1} : Vec3{200 / 255.0f, 50 / 255.0f, 100 / 255.0f}, 1e-6f);
+}
+
+// A control byte without deltas is 1 kB: what may become 100 MB is no more than is left.
+TEST(GltfMeshopt, DecodedBytesAreCountedFirst) {
+  MeshoptGltf m = meshopt_gltf(torus(3), "KHR_meshopt_compression");
+  constexpr size_t kControls = 100'000;
+  m.view("\xa1" + std::string(kControls, '\xaa') + std::string(24, '\0'), 4, 256 * kControls,
+         "ATTRIBUTES");
+  const TemporaryFolder folder;
+  const uint64_t before = resident_bytes();
+  const auto imported = import_scene(folder.write("a.glb", m.glb()), {}, before + 32 * 1024 * 1024);
+  ASSERT_FALSE(imported);
+  EXPECT_EQ(imported.error().code, ErrorCode::out_of_memory);
+  EXPECT_THAT(imported.error().message, HasSubstr("a.glb: buffer view 4 needs 97.7 MiB"));
+  EXPECT_LT(resident_bytes(), before + 32 * 1024 * 1024);
 }
 
 TEST(GltfMeshopt, TextFilesNameTheirCompressedBuffer) {
@@ -186,6 +239,17 @@ TEST_F(GltfMeshoptDamage, LayoutsThatTheExtensionForbids) {
   extension(0)["filter"] = "COLOR";
   EXPECT_THAT(error(), names_view(0, "filter is \"COLOR\", must be one of NONE, OCTAHEDRAL"));
   extension(0).erase("filter");
+  views[0]["extensions"]["KHR_meshopt_compression"] = extension(0);
+  EXPECT_THAT(error(), names_view(0, "it has both EXT_meshopt_compression and KHR_meshopt"));
+  views[0]["extensions"].erase("EXT_meshopt_compression");
+  views[0]["extensions"]["KHR_meshopt_compression"]["filter"] = "COLOR";
+  EXPECT_THAT(error(), names_view(0, "byteStride is 12, must be 4 or 8 for the filter COLOR"));
+  views[0]["extensions"] = views[1]["extensions"];
+  extension(0) = {{"buffer", 0},
+                  {"byteLength", 100},
+                  {"byteStride", 12},
+                  {"count", 49},
+                  {"mode", "ATTRIBUTES"}};
   extension(3)["count"] = 214;
   EXPECT_THAT(error(), names_view(3, "count is 214, must be a multiple of 3"));
   extension(3)["byteStride"] = 8;

@@ -65,37 +65,41 @@ std::vector<std::byte> draco_glb(std::span<const std::byte> input) {
 
 std::vector<std::byte> meshopt_glb(std::span<const std::byte> input) {
   constexpr size_t kHeader = 8;
-  constexpr std::array kFilters{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+  constexpr std::array kFilters{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"};
   if (input.size() < kHeader) return {};
   const auto flags = unsigned(input[0]);
   const size_t stride = 4 * size_t(input[1]), vertices = two_bytes(input, 2),
                indices = two_bytes(input, 4), index_bytes = (flags & 8) != 0 ? 2 : 4;
   const std::span<const std::byte> data = input.subspan(kHeader);
   const size_t split = std::min(two_bytes(input, 6), data.size());
+  const char* const name =
+      (flags & 16) != 0 ? "KHR_meshopt_compression" : "EXT_meshopt_compression";
   size_t decoded = 0;
   const auto view = [&](size_t at, size_t length, size_t size, size_t count, const char* mode) {
     json compressed = {{"buffer", 0},        {"byteOffset", at}, {"byteLength", length},
                        {"byteStride", size}, {"count", count},   {"mode", mode}};
-    if (mode == std::string("ATTRIBUTES")) compressed["filter"] = kFilters[flags & 3];
+    if (mode == std::string("ATTRIBUTES"))
+      compressed["filter"] = kFilters[(flags & 32) != 0 ? 4 : flags & 3];
     json out = {{"buffer", 1},
                 {"byteOffset", decoded},
                 {"byteLength", size * count},
-                {"extensions", {{"EXT_meshopt_compression", compressed}}}};
+                {"extensions", {{name, compressed}}}};
     if (mode == std::string("ATTRIBUTES")) out["byteStride"] = size;
     decoded += (size * count + 3) / 4 * 4;
     return out;
   };
   json scene = scene_of({{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}, {"indices", 2}});
-  scene["extensionsUsed"] = scene["extensionsRequired"] = {"EXT_meshopt_compression"};
+  scene["extensionsUsed"] = scene["extensionsRequired"] = {name};
   scene["bufferViews"] = {view(0, split, stride, vertices, "ATTRIBUTES"),
                           view(split, data.size() - split, index_bytes, indices,
                                (flags & 4) != 0 ? "TRIANGLES" : "INDICES")};
-  scene["accessors"] = {accessor(5126, vertices, "VEC3"), accessor(5120, vertices, "VEC3"),
+  scene["accessors"] = {accessor(stride < 12 ? 5120 : 5126, vertices, "VEC3"),
+                        accessor(5120, vertices, "VEC3"),
                         accessor(index_bytes == 2 ? 5123 : 5125, indices, "SCALAR")};
   for (size_t k = 0; k < 3; ++k) scene["accessors"][k]["bufferView"] = k / 2;
   scene["accessors"][1]["normalized"] = true;
   scene["buffers"] = {{{"byteLength", data.size()}}, {{"byteLength", decoded}}};
-  scene["buffers"][1]["extensions"]["EXT_meshopt_compression"]["fallback"] = true;
+  scene["buffers"][1]["extensions"][name]["fallback"] = true;
   return glb_of(scene, data);
 }
 

@@ -12,10 +12,11 @@ namespace luxel::fuzz {
 /// texture coordinates.
 std::vector<std::byte> draco_glb(std::span<const std::byte> input);
 
-/// A mesh whose positions and indices EXT_meshopt_compression fills. The first byte has the filter
-/// (bits 0 and 1), whether the indices are a list of triangles (bit 2) and have two bytes (bit 3);
-/// then come a vertex' size in units of 4 bytes, and in two bytes each the vertices, the indices
-/// and the length of the vertices' data; then both data.
+/// A mesh whose positions and indices meshopt fills. The first byte has the filter (bits 0 and 1),
+/// whether the indices are a list of triangles (bit 2) and have two bytes (bit 3), whether the
+/// extension is KHR_meshopt_compression (bit 4), and the filter COLOR instead (bit 5); then come a
+/// vertex' size in units of 4 bytes, and in two bytes each the vertices, the indices and the length
+/// of the vertices' data; then both data. Vertices too small for floats are bytes.
 std::vector<std::byte> meshopt_glb(std::span<const std::byte> input);
 
 }  // namespace luxel::fuzz

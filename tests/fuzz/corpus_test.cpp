@@ -53,7 +53,7 @@ TEST(Wrapped, SeedsAreRead) {
     const std::string bytes = seed_bytes(std::filesystem::path("draco") / seed);
     EXPECT_EQ(triangles_in(draco_glb(std::as_bytes(std::span(bytes))), "a.glb"), 18u) << seed;
   }
-  for (const char* seed : {"sequence", "triangles"}) {
+  for (const char* seed : {"sequence", "triangles", "format-1", "colors"}) {
     const std::string bytes = seed_bytes(std::filesystem::path("meshopt") / seed);
     EXPECT_EQ(triangles_in(meshopt_glb(std::as_bytes(std::span(bytes))), "a.glb"), 18u) << seed;
   }

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cstring>
 
+#include "luxel/base/base64.h"
+
 namespace luxel::import {
 namespace {
 
@@ -10,10 +12,16 @@ using Json = nlohmann::json;
 
 bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
 
+/// Empty where it is none.
+std::string text_in(const Json& image, const char* key) {
+  const auto text = image.find(key);
+  return text == image.end() || !text->is_string() ? "" : text->get<std::string>();
+}
+
 /// What images with the same bytes have in common.
 std::string place_of(const Json& image, size_t index) {
   if (image.contains("bufferView")) return fmt::format("view {}", image["bufferView"].dump());
-  const std::string uri = image.value("uri", "");
+  const std::string uri = text_in(image, "uri");
   return is_data(uri) ? fmt::format("image {}", index) : "file " + decoded_uri(uri);
 }
 
@@ -40,16 +48,6 @@ std::string decoded_uri(std::string_view uri) {
   return out;
 }
 
-void leave_images_out(Json& document) {
-  if (!document.contains("images")) return;
-  for (Json& image : document["images"]) {
-    const bool in_view = image.contains("bufferView");
-    if (!in_view && (!image.contains("uri") || is_data(image.value("uri", "")))) continue;
-    image.erase("bufferView"), image.erase("mimeType");
-    image["uri"] = "data:application/octet-stream;base64,AA==";
-  }
-}
-
 Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t index,
                                              const std::string& what) {
   const Json& image = reader.document["images"][index];
@@ -61,11 +59,17 @@ Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t in
       return fail(ErrorCode::bad_input, "{} lies beyond the end of its buffer", what);
     return bytes_of(buffer.data() + view.byteOffset, view.byteLength);
   }
-  const std::string uri = image.value("uri", "");
+  const std::string uri = text_in(image, "uri");
+  if (uri.empty()) return fail(ErrorCode::bad_input, "{} has neither a uri nor a bufferView", what);
   if (!is_data(uri))
     return read_named_picture(reader.source.files, decoded_uri(uri), what, reader.source.memory);
-  const std::vector<unsigned char>& held = reader.model.images[index].image;
-  return bytes_of(held.data(), held.size());
+  constexpr std::string_view kMark = ";base64,";
+  const size_t mark = uri.find(kMark);
+  auto bytes = mark == uri.npos ? std::nullopt
+                                : from_base64(std::string_view(uri).substr(mark + kMark.size()));
+  if (!bytes)
+    return fail(ErrorCode::bad_input, "{} is a data URI that is no base64; export it again", what);
+  return *std::move(bytes);
 }
 
 Result<uint32_t> load_image(const GltfReader& reader, Pictures& pictures, int image_index,
@@ -73,7 +77,7 @@ Result<uint32_t> load_image(const GltfReader& reader, Pictures& pictures, int im
   const size_t index = size_t(image_index);
   const Json& image = reader.document["images"][index];
   const auto load = [&]() -> Result<scene::Texture> {
-    const std::string uri = image.value("uri", ""), name = reader.model.images[index].name;
+    const std::string uri = text_in(image, "uri"), name = text_in(image, "name");
     const std::string file = uri.empty() || is_data(uri) ? label("image", index, name) : uri;
     const std::string where = reader.source.name + ": " + file;
     LUXEL_TRY(std::vector<std::byte> encoded,

@@ -14,14 +14,9 @@ namespace luxel::import {
 Result<uint32_t> load_image(const GltfReader& reader, Pictures& pictures, int image,
                             const std::string& user, std::string_view instead);
 
-/// The bytes of an image of the document: a buffer view of the model, a data URI that the model
-/// holds decoded, or a file.
+/// The bytes of an image of the document: a buffer view of the model, a data URI or a file.
 Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t image,
                                              const std::string& what);
-
-/// Takes images that lie in files and buffer views out of the document: tinygltf would read each of
-/// them at once, and those that share their bytes once each. Its image has one byte then.
-void leave_images_out(nlohmann::json& document);
 
 /// "a%20b.png" to "a b.png".
 std::string decoded_uri(std::string_view uri);

@@ -1,22 +1,13 @@
 #include "luxel/import/gltf_load.h"
 
-#include <algorithm>
 #include <span>
 
 #include "luxel/import/gltf_buffers.h"
 #include "luxel/import/gltf_check_steps.h"
 #include "luxel/import/gltf_checks.h"
-#include "luxel/import/gltf_images.h"
 
 namespace luxel::import {
 namespace {
-
-/// Keeps the encoded bytes of a data URI: pictures are decoded where a material asks for them.
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + std::max(size, 0));
-  return true;
-}
 
 /// What tinygltf's callbacks for files are given: it reads the buffers by them, and nothing else.
 struct BufferFiles {
@@ -53,7 +44,6 @@ Result<tinygltf::Model> load_model(const SourceFile& source, const std::string& 
                                    std::span<const std::byte> glb) {
   tinygltf::TinyGLTF loader;
   BufferFiles files{source};
-  loader.SetImageLoader(keep_encoded, nullptr);
   loader.SetFsCallbacks(callbacks_of(files));
   tinygltf::Model model;
   std::string error, warning;
@@ -92,9 +82,9 @@ Result<std::string> json_text_of(const SourceFile& source) {
 /// The document as tinygltf takes it. It takes no buffer without bytes, and would give a .glb's
 /// only ones to every buffer that has no uri: one byte stands for what nobody reads. It takes no
 /// indices without bytes either, as Draco's are: decode_draco() puts them in. Pictures are read
-/// where they are asked for.
+/// where a material asks for them, and may be of kinds that it refuses.
 Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder, const SceneFiles& files) {
-  leave_images_out(document);
+  document.erase("images");
   state_true_lengths(document, files);
   for (size_t i = 0; i < is_placeholder.size(); ++i)
     if (is_placeholder[i])

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <webp/encode.h>
 
+#include "luxel/base/base64.h"
 #include "luxel/import/test_files.h"
 #include "luxel/scene/specular.h"
 
@@ -316,14 +317,44 @@ TEST(GltfMaterial, WebpTexturesAreReadWhereNoOtherPictureIs) {
   EXPECT_THAT(imported.error().message, HasSubstr("EXT_texture_webp: source 2 is out of range"));
 }
 
+std::string data_uri(const std::string& type, const std::string& bytes) {
+  return "data:" + type + ";base64," + base64(std::as_bytes(std::span(bytes.data(), bytes.size())));
+}
+
+TEST(GltfMaterial, PicturesInDataUris) {
+  const std::string webp = webp_of({90, 80, 70, 255}), png = png_of(1, 1, {1, 2, 3, 255});
+  Gltf gltf = square_with_texture({{"source", 0}}, {png});
+  const auto imported_with = [&](const std::string& uri) {
+    gltf.json["images"] = {{{"uri", uri}}};
+    return import_glb(gltf);
+  };
+  EXPECT_EQ(scene_of(imported_with(data_uri("image/png", png))).textures.at(0).rgba[2], 3);
+  EXPECT_EQ(scene_of(imported_with(data_uri("", png))).textures.at(0).rgba[2], 3);
+  const std::string only_webp = data_uri("image/webp", webp);
+  EXPECT_EQ(scene_of(imported_with(only_webp)).textures.at(0).rgba[1], 80);
+  for (const std::string& uri : {only_webp + "*", std::string("data:image/svg+xml,%3Csvg/%3E")})
+    EXPECT_THAT(
+        error_of(imported_with(uri)),
+        HasSubstr("a.glb: the texture of material 0 (brick) is a data URI that is no base64"));
+  gltf.json["images"][0] = {{"name", "pic"}};
+  EXPECT_THAT(error_of(import_glb(gltf)), HasSubstr("has neither a uri nor a bufferView"));
+}
+
 TEST(GltfMaterial, Ktx2IsReplacedByItsFallbackOrSaid) {
+  const std::string ktx2 = "\xabKTX 20\xbb";
   const nlohmann::json extension = {{"KHR_texture_basisu", {{"source", 0}}}};
   Gltf gltf = square_with_texture({{"extensions", extension}, {"source", 1}},
-                                  {"\xabKTX 20\xbb", png_of(1, 1, {1, 2, 3, 255})});
+                                  {ktx2, png_of(1, 1, {1, 2, 3, 255})});
   gltf.json["extensionsUsed"] = {"KHR_texture_basisu"};
-  const auto fallback = import_glb(gltf);
-  EXPECT_EQ(scene_of(fallback).textures[0].rgba[1], 2);
-  EXPECT_THAT(all_of(fallback->warnings), Not(HasSubstr("basisu")));
+  const nlohmann::json in_view = gltf.json["images"][0];
+  for (const nlohmann::json& image :
+       {in_view, nlohmann::json{{"uri", data_uri("image/ktx2", ktx2)}},
+        nlohmann::json{{"uri", "nowhere.ktx2"}, {"mimeType", "image/ktx2"}}}) {
+    gltf.json["images"][0] = image;
+    const auto fallback = import_glb(gltf);
+    EXPECT_EQ(scene_of(fallback).textures.at(0).rgba[1], 2) << image;
+    EXPECT_EQ(all_of(fallback->warnings), "") << image;
+  }
   gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
   gltf.json["textures"][0].erase("source");
   const auto needed = import_glb(gltf);

@@ -15,6 +15,7 @@
 #include "luxel/scene/sides.h"
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/viewfactor/rectangle_factor.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {
@@ -106,6 +107,38 @@ TEST(Sides, TheUndersideHasTheLightOfTheFloor) {
   // Texels of 3 cm blur the shadow's rim; 1024 rays.
   EXPECT_NEAR(b.light_seen(kBelow + Vec3{0, 0.6f, 0}, kUp).x, expected, 0.03 * expected);
   EXPECT_NEAR(b.light_seen(kAbove, kDown).x, 3, 0.01);
+}
+
+/// E on a black floor under a sky of 1, a metre below a black plate with these alphas.
+double light_below(scene::AlphaMode mode, float (*alpha_at)(Vec3)) {
+  scene::Scene s;
+  scene::add_material(s, "plate", {});
+  s.materials[0].double_sided = true, s.materials[0].alpha_mode = mode;
+  scene::add_rectangle(s, {-1, 1, -1, 1}, 1, true, 0);
+  for (const Vec3& p : s.meshes[0].positions) s.meshes[0].alphas.push_back(alpha_at(p));
+  scene::add_rectangle(s, {-3, 3, -3, 3}, 0, true, scene::add_material(s, "floor", {}));
+  s.background = {1, 1, 1};
+  const Baked b = bake(s, "--resolution 128 --samples 1024");
+  size_t plates = 0;
+  for (const scene::Mesh& mesh : b.scene.meshes)
+    for (size_t v = 0; v < mesh.alphas.size(); ++v, ++plates)
+      EXPECT_EQ(mesh.alphas[v], alpha_at(mesh.positions[v])) << "in baked.glb";
+  EXPECT_GE(plates, 4u);
+  return double(b.light_seen({0.2f, 0.5f, 0.1f}, kDown).x);
+}
+
+// As if the plate were not there; half a plate, where a ramp from 0 to 1 is above 0.5; of a plate
+// that half covers, half of the light is stopped, and the other half darkened by half.
+TEST(VertexAlpha, CutsAndBlends) {
+  const double whole = viewfactor::rectangle_factor(-1.2, 0.8, -1.1, 0.9, 1),
+               half = viewfactor::rectangle_factor(-0.2, 0.8, -1.1, 0.9, 1);
+  for (const scene::AlphaMode mode : {scene::AlphaMode::mask, scene::AlphaMode::blend})
+    EXPECT_NEAR(light_below(mode, [](Vec3) { return 0.0f; }), kPiDouble, 1e-3);
+  // Texels of 5 cm, 1024 rays.
+  const double ramp = light_below(scene::AlphaMode::mask, [](Vec3 p) { return 0.5f + 0.5f * p.x; });
+  EXPECT_NEAR(ramp, kPiDouble * (1 - half), 0.03 * kPiDouble);
+  const double blended = light_below(scene::AlphaMode::blend, [](Vec3) { return 0.5f; });
+  EXPECT_NEAR(blended, kPiDouble * (1 - 0.75 * whole), 0.03 * kPiDouble);
 }
 
 /// plate() over a floor, both with a TEXCOORD_1 that is valid.

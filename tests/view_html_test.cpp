@@ -148,6 +148,7 @@ scene::Scene one_of_each() {
   masked.base_color_texture.filter = scene::Filter::nearest;
   masked.double_sided = true;
   add_square(scene, place(2, 0) + x, -x, y, masked);  // seen from behind
+  scene.meshes.back().alphas = {1, 1, 0, 0};          // the upper half is cut off
   scene::Material metal = plain;
   metal.metallic = 0.8f;
   metal.metallic_texture = look;

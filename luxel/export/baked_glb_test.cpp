@@ -18,6 +18,8 @@ namespace luxel::export_ {
 namespace {
 
 using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
 
 struct Baked {
   scene::Scene scene = rich_scene();
@@ -359,6 +361,50 @@ TEST(SceneGlb, UnlitMaterialsAndColorsAreValid) {
   const Document d = parse(*glb);
   EXPECT_EQ(read_triangles(d)[0].corner[0].color, (Vec3{1, 0.5f, 0}));
   EXPECT_EQ(materials_of(d)["sign"]["extensions"].size(), 1u);
+}
+
+/// COLOR_0 of each primitive whose material has this name, by its type.
+std::map<std::string, std::vector<float>> colors_of(const Document& d,
+                                                    const std::string& material) {
+  std::map<std::string, std::vector<float>> out;
+  for (const json& mesh : d.j["meshes"])
+    for (const json& primitive : mesh["primitives"]) {
+      if (d.j["materials"][primitive["material"].get<size_t>()]["name"] != material) continue;
+      if (!primitive["attributes"].contains("COLOR_0")) continue;
+      const json& accessor = d.j["accessors"][primitive["attributes"]["COLOR_0"].get<size_t>()];
+      out[accessor["type"]] = floats(d, accessor);
+    }
+  return out;
+}
+
+// Only where the material counts it; pictures that hold alpha hold it once.
+TEST(SceneGlb, VertexAlphaIsTheFourthNumberOfColours) {
+  scene::Scene scene = rich_scene();
+  scene::Mesh& mesh = scene.meshes[0];
+  for (size_t v = 0; v < mesh.positions.size(); ++v)
+    mesh.alphas.push_back(float(v + 1) / float(mesh.positions.size() + 1));
+  const auto glb = scene_glb(scene);
+  ASSERT_TRUE(glb);
+  const Document d = parse(*glb);
+  EXPECT_THAT(colors_of(d, "painted"), ElementsAre(Pair("VEC3", ::testing::_)));
+  const auto leaf = colors_of(d, "leaf");
+  ASSERT_THAT(leaf, ElementsAre(Pair("VEC4", ::testing::_)));
+  const std::vector<float>& rgba = leaf.at("VEC4");
+  for (size_t i = 0; i < rgba.size(); i += 4) {
+    const auto same = std::ranges::find(mesh.alphas, rgba[i + 3]);
+    ASSERT_NE(same, mesh.alphas.end());
+    const Rgb color = mesh.colors[size_t(same - mesh.alphas.begin())];
+    EXPECT_EQ((Rgb{rgba[i], rgba[i + 1], rgba[i + 2]}), color);
+  }
+  LitPictures pictures;
+  pictures.pages.push_back({8, 8, 4, std::vector<uint8_t>(256, 128)});
+  pictures.attach = Attach::combined;
+  EXPECT_THAT(colors_of(parse(*lit_glb(scene, made_up_atlas(scene), pictures)), "leaf"), IsEmpty());
+  pictures.attach = Attach::emissive;
+  const auto emissive = colors_of(parse(*lit_glb(scene, made_up_atlas(scene), pictures)), "leaf");
+  ASSERT_THAT(emissive, ElementsAre(Pair("VEC4", ::testing::_)));
+  EXPECT_EQ(emissive.at("VEC4")[0], 1) << "white: the colour is in the picture";
+  EXPECT_NE(std::ranges::find(mesh.alphas, emissive.at("VEC4")[3]), mesh.alphas.end());
 }
 
 /// A square in the plane of x and y, seen from z, and its mirror image beside it, with a normal

@@ -48,6 +48,31 @@ TexcoordSlots append_texcoords(Glb& glb, const scene::Mesh& mesh, const scene::M
   return slots;
 }
 
+/// What of COLOR_0 no picture holds.
+struct Shown {
+  bool colors = true, alphas = true;
+};
+
+/// Alpha only where the scene's material counts it.
+void append_colors(Glb& glb, const scene::Mesh& mesh, const scene::Material& material,
+                   const LightmapVertices& vertices, Shown shown, json& attributes) {
+  const bool has_colors = shown.colors && !mesh.colors.empty();
+  const bool has_alphas =
+      shown.alphas && !mesh.alphas.empty() && material.alpha_mode != scene::AlphaMode::opaque;
+  if (!has_colors && !has_alphas) return;
+  std::vector<Vec3> colors(vertices.source.size(), Vec3{1, 1, 1});
+  if (has_colors) colors = picked(mesh.colors, vertices.source);
+  for (Vec3& c : colors) c = min(max(c, Vec3{}), Vec3{1, 1, 1});  // glTF wants no others
+  if (!has_alphas) {
+    attributes["COLOR_0"] = append_accessor(glb, std::span<const Vec3>(colors));
+    return;
+  }
+  std::vector<std::array<float, 4>> with_alphas;
+  for (size_t v = 0; v < colors.size(); ++v)
+    with_alphas.push_back({colors[v].x, colors[v].y, colors[v].z, mesh.alphas[vertices.source[v]]});
+  attributes["COLOR_0"] = append_accessor(glb, std::span<const std::array<float, 4>>(with_alphas));
+}
+
 /// What the triangles of a primitive have in common.
 struct Part {
   uint32_t material = 0, page = 0;
@@ -80,11 +105,8 @@ json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const sc
   // Pictures lie on the charts of both sets: some programs look at the first one, whatever the
   // material says.
   const bool in_pictures = is_in_pictures(book, material, place);
-  if (!mesh.colors.empty() && !in_pictures) {
-    std::vector<Vec3> colors = picked(mesh.colors, vertices.source);
-    for (Vec3& c : colors) c = min(max(c, Vec3{}), Vec3{1, 1, 1});  // glTF wants no others
-    attributes["COLOR_0"] = append_accessor(glb, std::span<const Vec3>(colors));
-  }
+  append_colors(glb, mesh, scene.materials[part.material], vertices,
+                {!in_pictures, !in_pictures || book.attach != Attach::combined}, attributes);
   const TexcoordSlots slots = append_texcoords(
       glb, mesh, material, vertices, {lightmapped, !(lightmapped && in_pictures)}, attributes);
   return {{"attributes", std::move(attributes)},

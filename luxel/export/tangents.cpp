@@ -45,6 +45,7 @@ scene::Mesh with_flat_normals(const scene::Mesh& mesh) {
     append_corners(mesh.uv0, t, out.uv0);
     append_corners(mesh.uv1, t, out.uv1);
     append_corners(mesh.colors, t, out.colors);
+    append_corners(mesh.alphas, t, out.alphas);
     out.normals.insert(out.normals.end(), 3, n);
     out.triangles.push_back({first, first + 1, first + 2});
   }

@@ -45,7 +45,7 @@ void append(std::vector<T>& to, bool wanted, bool has, size_t start, size_t coun
 }
 
 struct Wanted {
-  bool normals = false, uv0 = false, uv1 = false, colors = false;
+  bool normals = false, uv0 = false, uv1 = false, colors = false, alphas = false;
 };
 
 void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bool srgb_colors) {
@@ -68,6 +68,8 @@ void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bo
            const aiColor4D& c = part.mColors[0][i];
            return srgb_colors ? linear({c.r, c.g, c.b}) : Rgb{c.r, c.g, c.b};
          });
+  append(mesh.alphas, wanted.alphas, part.HasVertexColors(0), start, count, 1.0f,
+         [&](size_t i) { return part.mColors[0][i].a; });
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
     if (face.mNumIndices != 3) continue;  // triangulated; what is left are points and lines
@@ -85,17 +87,20 @@ struct Habits {
 };
 
 /// Assimp splits a surface by material; the parts that one node draws belong together.
-scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts,
-                        const Habits& habits) {
+scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, const Habits& habits,
+                        const scene::Scene& out) {
   Wanted wanted;
   for (const unsigned p : parts) {
     wanted.normals |= in.mMeshes[p]->HasNormals() && !habits.facet_normals;
     wanted.uv0 |= in.mMeshes[p]->HasTextureCoords(0);
     wanted.uv1 |= in.mMeshes[p]->HasTextureCoords(1);
     wanted.colors |= in.mMeshes[p]->HasVertexColors(0);
+    wanted.alphas |=
+        in.mMeshes[p]->HasVertexColors(0) && counts_alpha(out, in.mMeshes[p]->mMaterialIndex);
   }
   scene::Mesh mesh;
   for (const unsigned p : parts) append_part(mesh, *in.mMeshes[p], wanted, habits.srgb_colors);
+  drop_alphas_of_one(mesh);
   join_identical_vertices(mesh);
   return mesh;
 }
@@ -137,7 +142,7 @@ void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const
   for (const DrawnNode& node : drawn) {
     const auto [mesh, is_new] = known.try_emplace(node.parts, uint32_t(out.meshes.size()));
     if (is_new) {
-      out.meshes.push_back(merged_mesh(in, node.parts, habits));
+      out.meshes.push_back(merged_mesh(in, node.parts, habits, out));
       out.meshes.back().name = node.name;
     }
     out.instances.push_back({node.name, mesh->second, node.world});

@@ -257,6 +257,43 @@ TEST(Fbx, PicturesOfOtherMachinesAreLookedForOrLost) {
   }
 }
 
+// Alpha grows along x; only the floor's material lets light through.
+TEST(Fbx, VertexAlphaIsReadWhereAMaterialCountsIt) {
+  std::string text = room(centimetres_z_up());
+  const auto insert_before = [&](const std::string& mark, const char* more) {
+    for (size_t at = text.find(mark); at != text.npos; at = text.find(mark, at)) {
+      text.insert(at, more);
+      at += std::strlen(more) + mark.size();
+    }
+  };
+  insert_before("    LayerElementMaterial: 0 {\n      Version", R"(    LayerElementColor: 0 {
+      Version: 101
+      MappingInformationType: "ByPolygonVertex"
+      ReferenceInformationType: "Direct"
+      Colors: *16 {
+        a: 1,1,1,0.25,1,1,1,0.75,1,1,1,0.75,1,1,1,0.25
+      }
+    }
+)");
+  insert_before("      LayerElement: {\n        Type: \"LayerElementUV\"",
+                "LayerElement: {\nType: \"LayerElementColor\"\nTypedIndex: 0\n}\n");
+  insert_before(
+      "P: \"SpecularColor\", \"Color\", \"\", \"A\",0.4,0.2,0.1\n      P: \"SpecularFactor\"",
+      "P: \"Opacity\", \"Number\", \"\", \"A\",0.5\n");
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "pics");
+  folder.write("pics/paint.png", png_of(3, 1, {255, 255, 255, 255}));
+  const scene::Scene scene = scene_of(import_scene(folder.write("a.fbx", text)));
+  const scene::Mesh& floor = scene.meshes.at(scene.instances.at(0).mesh);
+  ASSERT_EQ(floor.alphas.size(), 4u);
+  for (size_t v = 0; v < 4; ++v)
+    EXPECT_EQ(floor.alphas[v], floor.positions[v].x > 0 ? 0.75f : 0.25f);
+  EXPECT_FLOAT_EQ(scene::passage_at(scene, {0, 0, {0, 0}}).coverage, 0.5f * floor.alphas[0]);
+  const scene::Mesh& lamp = scene.meshes.at(scene.instances.at(2).mesh);
+  EXPECT_EQ(lamp.colors.size(), 4u);
+  EXPECT_TRUE(lamp.alphas.empty());
+}
+
 TEST(Fbx, LightsAndCameraAreInMetresToo) {
   const scene::Scene scene = import_fbx_room();
   ASSERT_EQ(scene.lights.size(), 2u);

@@ -18,7 +18,7 @@ std::vector<Vec2> to_vec2(const Numbers& numbers) {
 }
 
 Result<Vertices> read_vertices(const GltfReader& reader, const Attributes& attributes,
-                               int first_set, const std::string& where) {
+                               int first_set, bool with_alphas, const std::string& where) {
   Vertices v;
   LUXEL_TRY(const Numbers positions,
             read_numbers(reader.model, attributes.at("POSITION"), {3}, where + ", POSITION"));
@@ -33,6 +33,8 @@ Result<Vertices> read_vertices(const GltfReader& reader, const Attributes& attri
   v.uv0 = to_vec2(uv0);
   v.uv1 = to_vec2(uv1);
   v.colors = to_vec3(colors);
+  if (with_alphas && colors.components == 4)
+    for (size_t i = 3; i < colors.values.size(); i += 4) v.alphas.push_back(colors.values[i]);
   return v;
 }
 
@@ -88,6 +90,7 @@ void make_flat(Vertices& v, std::vector<Triangle>& triangles) {
       copy(v.uv0, flat.uv0, corner);
       copy(v.uv1, flat.uv1, corner);
       copy(v.colors, flat.colors, corner);
+      copy(v.alphas, flat.alphas, corner);
       flat.normals.push_back(n);
       corner = uint32_t(flat.positions.size() - 1);
     }
@@ -117,6 +120,7 @@ bool append_vertices(scene::Mesh& mesh, const Vertices& v) {
   append(mesh.uv0, v.uv0, start, count, Vec2{}, uv_filled);
   append(mesh.uv1, v.uv1, start, count, Vec2{}, uv_filled);
   append(mesh.colors, v.colors, start, count, Rgb{1, 1, 1}, ignored);
+  append(mesh.alphas, v.alphas, start, count, 1.0f, ignored);
   mesh.positions.insert(mesh.positions.end(), v.positions.begin(), v.positions.end());
   return uv_filled;
 }
@@ -161,6 +165,7 @@ struct MeshBuilder {
   const Pose& pose;
   scene::Mesh mesh;
   bool some_normals = false;
+  bool some_alphas = false;  ///< a material counts them
   bool uv_filled = false;
   std::map<Sources, Taken> taken;  ///< primitives often share all their vertices
 };
@@ -185,7 +190,8 @@ Status add_primitive(MeshBuilder& builder, const tinygltf::Primitive& primitive,
     LUXEL_TRY(triangles, read_triangles(builder.reader, primitive, known->second.count, where));
     turn_mirrored(known->second.mirrored, triangles);
   } else {
-    LUXEL_TRY(Vertices v, read_vertices(builder.reader, primitive.attributes, first_set, where));
+    LUXEL_TRY(Vertices v, read_vertices(builder.reader, primitive.attributes, first_set,
+                                        builder.some_alphas, where));
     LUXEL_TRY_STATUS(apply_pose(builder.reader, primitive, builder.pose, where, v));
     const size_t count = v.positions.size();
     if (mesh.positions.size() + 3 * count > UINT32_MAX)
@@ -210,11 +216,13 @@ Status add_primitive(MeshBuilder& builder, const tinygltf::Primitive& primitive,
 Result<scene::Mesh> read_mesh(GltfReader& reader, size_t index, const Pose& pose) {
   const tinygltf::Mesh& in = reader.model.meshes[index];
   const std::string name = reader.source.name + ": " + label("mesh", index, in.name);
-  MeshBuilder builder{reader, pose, {}, false, false, {}};
+  MeshBuilder builder{reader, pose, {}, false, false, false, {}};
   builder.mesh.name = in.name;
   bool unindexed = false;
-  for (const tinygltf::Primitive& p : in.primitives)
+  for (const tinygltf::Primitive& p : in.primitives) {
     builder.some_normals |= p.attributes.count("NORMAL") > 0;
+    builder.some_alphas |= p.material >= 0 && counts_alpha(reader.out.scene, uint32_t(p.material));
+  }
   for (size_t i = 0; i < in.primitives.size(); ++i) {
     const tinygltf::Primitive& primitive = in.primitives[i];
     const std::string where = name + fmt::format(", primitive {}", i);
@@ -225,6 +233,7 @@ Result<scene::Mesh> read_mesh(GltfReader& reader, size_t index, const Pose& pose
   if (builder.uv_filled)
     reader.out.warnings.push_back(
         name + ": only some primitives have texture coordinates; (0, 0) is used for the others");
+  drop_alphas_of_one(builder.mesh);
   // Without indices nothing says which triangles are neighbours, and charts need to know.
   if (unindexed) join_identical_vertices(builder.mesh);
   return std::move(builder.mesh);

@@ -18,6 +18,7 @@ struct Vertices {
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uv0, uv1;
   std::vector<Rgb> colors;
+  std::vector<float> alphas;
   std::vector<bool> mirrored;  ///< triangles that begin here turn round; empty: none
 };
 

@@ -146,6 +146,56 @@ TEST(Gltf, NormalizedAndQuantizedIntegersAreScaled) {
   EXPECT_EQ(mesh.normals[0], (Vec3{0, 0, 1}));
 }
 
+/// The square with a corner of each alpha, as two primitives that share their vertices.
+scene::Mesh mesh_with_alphas(const std::vector<float>& alphas, const char* first,
+                             const char* second, bool with_normals = false) {
+  Gltf gltf = square_gltf();
+  std::vector<float> colors;
+  for (const float alpha : alphas) colors.insert(colors.end(), {1, 0.5f, 0.25f, alpha});
+  gltf.json["materials"] = {{{"alphaMode", first}}, {{"alphaMode", second}}};
+  auto& primitives = gltf.json["meshes"][0]["primitives"];
+  primitives[0]["attributes"]["COLOR_0"] = gltf.floats(colors, "VEC4", 4);
+  primitives.push_back(primitives[0]);
+  for (const size_t k : {0, 1}) primitives[k]["material"] = k;
+  if (with_normals)
+    primitives[1]["attributes"]["NORMAL"] =
+        gltf.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+  return scene_of(import_glb(gltf)).meshes.at(0);
+}
+
+TEST(Gltf, VertexAlphaIsReadWhereAMaterialCountsIt) {
+  const std::vector<float> ramp{0, 0.25f, 0.5f, 1};
+  for (const char* mode : {"MASK", "BLEND"}) {
+    EXPECT_EQ(mesh_with_alphas(ramp, mode, mode).alphas, ramp);
+    EXPECT_EQ(mesh_with_alphas(ramp, "OPAQUE", mode).alphas, ramp) << "the second one's, too";
+    EXPECT_TRUE(mesh_with_alphas({1, 1, 1, 1}, mode, mode).alphas.empty());
+  }
+  const scene::Mesh opaque = mesh_with_alphas(ramp, "OPAQUE", "OPAQUE");
+  EXPECT_TRUE(opaque.alphas.empty());
+  EXPECT_EQ(opaque.colors.size(), 4u);
+  // The first primitive is flat: its triangles have corners of their own.
+  const scene::Mesh flat = mesh_with_alphas(ramp, "MASK", "MASK", true);
+  EXPECT_EQ(flat.alphas, (std::vector<float>{0, 0.25f, 0.5f, 0, 0.5f, 1, 0, 0.25f, 0.5f, 1}));
+}
+
+// Two squares, of which only the second has colours; without indices vertices that differ in alpha
+// alone stay apart.
+TEST(Gltf, VertexAlphaOfOnePrimitiveAndWithoutIndices) {
+  Gltf gltf = square_gltf();
+  auto& primitives = gltf.json["meshes"][0]["primitives"];
+  gltf.json["materials"] = {{{"alphaMode", "MASK"}}};
+  const int corners =
+      gltf.floats({0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 0, 1, 1, 1, 1, 0, 1, 1}, "VEC3", 3);
+  std::vector<float> colors(24, 1);
+  for (size_t v = 3; v < 6; ++v) colors[4 * v + 3] = 0.5f;
+  primitives.push_back(
+      {{"attributes", {{"POSITION", corners}, {"COLOR_0", gltf.floats(colors, "VEC4", 4)}}},
+       {"material", 0}});
+  const scene::Mesh mesh = scene_of(import_glb(gltf)).meshes.at(0);
+  EXPECT_EQ(mesh.positions.size(), 10u) << "the diagonal's ends are there twice";
+  EXPECT_EQ(mesh.alphas, (std::vector<float>{1, 1, 1, 1, 1, 1, 1, 0.5f, 0.5f, 0.5f}));
+}
+
 TEST(Gltf, BuffersMayBeExternalOrBase64) {
   const Gltf gltf = square_gltf();
   nlohmann::json document = gltf.json;

@@ -49,6 +49,13 @@ Status check_packed(const SourceFile& source);
 /// Merges vertices that agree in every bit of every attribute, in the order of their first use.
 void join_identical_vertices(scene::Mesh& mesh);
 
+/// Whether a material asks for the alpha of vertices.
+inline bool counts_alpha(const scene::Scene& scene, uint32_t material) {
+  return scene.materials[material].alpha_mode != scene::AlphaMode::opaque;
+}
+/// Most files state an alpha of 1 with every colour: it is not kept.
+void drop_alphas_of_one(scene::Mesh& mesh);
+
 /// What a surface is made of when its file does not say: white that reflects 0.8. glTF's own
 /// default would be base colour 1 with metallic 1, that is black to a diffuse solver; a white of 1
 /// never loses light and would be clamped.

@@ -13,7 +13,7 @@ namespace {
 
 /// A vertex as bits: equality of floats would merge -0 with 0 and never NaN with NaN; both are
 /// harmless, and bits can be hashed.
-using VertexKey = std::array<uint32_t, 13>;
+using VertexKey = std::array<uint32_t, 14>;
 
 struct HashVertex {
   size_t operator()(const VertexKey& key) const {
@@ -38,6 +38,7 @@ VertexKey key_of(const scene::Mesh& mesh, size_t vertex) {
   append_bits(key, at, mesh.uv0, vertex);
   append_bits(key, at, mesh.uv1, vertex);
   append_bits(key, at, mesh.colors, vertex);
+  append_bits(key, at, mesh.alphas, vertex);
   return key;
 }
 
@@ -66,8 +67,13 @@ void join_identical_vertices(scene::Mesh& mesh) {
   gather(mesh.uv0, kept);
   gather(mesh.uv1, kept);
   gather(mesh.colors, kept);
+  gather(mesh.alphas, kept);
   for (auto& triangle : mesh.triangles)
     for (uint32_t& corner : triangle) corner = new_index[corner];
+}
+
+void drop_alphas_of_one(scene::Mesh& mesh) {
+  if (std::ranges::all_of(mesh.alphas, [](float alpha) { return alpha == 1; })) mesh.alphas = {};
 }
 
 std::string one_sentence(std::string text) {

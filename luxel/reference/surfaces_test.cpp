@@ -62,6 +62,36 @@ TEST(SurfacesOfPaths, TheInsideOfADoubleSidedBoxIsAFurnace) {
   expect_unbiased(solve(scene, points, {.samples = 500}), std::vector<double>(100, 2 * kPiDouble));
 }
 
+// A black sheet under a sky of 1, whose corners alone say how much of it is there. A ramp from 0 to
+// 1 cut at 0.5 leaves the half [0, 1]; half of it blended stops half of the light, and darkens the
+// rest by half.
+TEST(SurfacesOfPaths, VertexAlphaCutsAndBlends) {
+  scene::Scene scene;
+  scene::add_material(scene, "sheet", {});
+  scene.materials[0].double_sided = true;
+  scene::add_rectangle(scene, {-1, 1, -1, 1}, 1, true, 0);
+  scene.background = gray(1);
+  Points points;
+  points.add({0.2f, 0, 0.1f}, {0, 1, 0});
+  const double whole = rectangle_factor(-1.2, 0.8, -1.1, 0.9, 1),
+               half = rectangle_factor(-0.2, 0.8, -1.1, 0.9, 1);
+  const auto expect = [&](scene::AlphaMode mode, auto alpha_at, double hidden) {
+    scene.materials[0].alpha_mode = mode;
+    scene.meshes[0].alphas.clear();
+    for (const Vec3& p : scene.meshes[0].positions) scene.meshes[0].alphas.push_back(alpha_at(p));
+    expect_unbiased(solve(scene, points, {.samples = 20000}), {kPiDouble * (1 - hidden)});
+  };
+  for (const scene::AlphaMode mode : {scene::AlphaMode::mask, scene::AlphaMode::blend})
+    expect(
+        mode, [](Vec3) { return 0.0f; }, 0);
+  expect(
+      scene::AlphaMode::mask, [](Vec3 p) { return 0.5f + 0.5f * p.x; }, half);
+  expect(
+      scene::AlphaMode::blend, [](Vec3) { return 0.5f; }, 0.75 * whole);
+  expect(
+      scene::AlphaMode::opaque, [](Vec3) { return 0.0f; }, whole);
+}
+
 /// A box of uniform light inside: every inner side emits radiosity e. Its walls reflect rho and let
 /// tau through; outside is a sky of radiance `sky`. The inside is a furnace, whatever its shape,
 /// and the outside sees nothing but sky:

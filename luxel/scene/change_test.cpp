@@ -128,6 +128,7 @@ TEST(SceneChange, SaysWhatCannotBeFollowedUp) {
   EXPECT_EQ(beyond([](Scene& s) { s.meshes[1].positions[0].x = 0.1f; }),
             "mesh 'glow box' has changed");
   EXPECT_EQ(beyond([](Scene& s) { s.meshes[0].colors.resize(8); }), "mesh 'paint box' has changed");
+  EXPECT_EQ(beyond([](Scene& s) { s.meshes[0].alphas.resize(8); }), "mesh 'paint box' has changed");
   EXPECT_EQ(beyond([](Scene& s) { s.meshes[0].triangle_material[3] = glow; }),
             "mesh 'paint box' has changed");
   EXPECT_EQ(beyond([](Scene& s) { s.instances[0].mesh = 1; }),

@@ -93,7 +93,7 @@ class CutEdges {
       if (!values.empty()) values.push_back(values[low] * (1 - s) + values[high] * s);
     };
     between(mesh_.positions), between(mesh_.uv0), between(mesh_.uv1), between(mesh_.colors);
-    between(mesh_.normals);
+    between(mesh_.alphas), between(mesh_.normals);
     if (mesh_.normals.empty()) return;
     Vec3& n = mesh_.normals.back();
     // Normals that point against each other leave none between them.

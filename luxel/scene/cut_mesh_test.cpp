@@ -89,6 +89,7 @@ TEST(CutMesh, AttributesFollow) {
     mesh.uv0.push_back({0.5f * p.x + p.y, 1 - p.x});
     mesh.uv1.push_back({p.y, p.x + 2});
     mesh.colors.push_back(Rgb{p.x, p.y, p.x + p.y} * 0.1f);
+    mesh.alphas.push_back(0.2f * p.y);
   }
   mesh.triangles = {{0, 1, 2}}, mesh.triangle_material = {7};
   const std::vector<uint8_t> all{1};
@@ -102,6 +103,7 @@ TEST(CutMesh, AttributesFollow) {
     EXPECT_NEAR(mesh.uv0[v].y, 1 - p.x, 1e-6f);
     EXPECT_NEAR(mesh.uv1[v].y, p.x + 2, 1e-6f);
     EXPECT_NEAR(mesh.colors[v].z, 0.1f * (p.x + p.y), 1e-6f);
+    EXPECT_NEAR(mesh.alphas[v], 0.2f * p.y, 1e-6f);
     EXPECT_EQ(mesh.normals[v], (Vec3{0, 0, 1}));
   }
 }

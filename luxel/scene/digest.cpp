@@ -14,9 +14,10 @@ namespace luxel::scene {
 // list would be too short to compile.
 
 uint64_t digest(const Mesh& m) {
-  const auto& [name, positions, normals, uv0, uv1, colors, triangles, material, other_side] = m;
+  const auto& [name, positions, normals, uv0, uv1, colors, alphas, triangles, material,
+               other_side] = m;
   Digest d;
-  add(d, positions), add(d, normals), add(d, uv0), add(d, uv1), add(d, colors);
+  add(d, positions), add(d, normals), add(d, uv0), add(d, uv1), add(d, colors), add(d, alphas);
   add(d, triangles), add(d, material), add(d, other_side);
   return d.value();
 }

@@ -17,6 +17,14 @@ T attribute_at(const std::vector<T>& values, const std::array<uint32_t, 3>& corn
   return interpolate(values[corners[0]], values[corners[1]], values[corners[2]], at);
 }
 
+/// Where all corners have one alpha, that is not rounded: a cutoff may be 1.
+float alpha_between(const Mesh& mesh, const SurfacePoint& p) {
+  if (mesh.alphas.empty()) return 1;
+  const auto [a, b, c] = mesh.triangles[p.triangle];
+  const float first = mesh.alphas[a];
+  return first + (mesh.alphas[b] - first) * p.at.u + (mesh.alphas[c] - first) * p.at.v;
+}
+
 int wrapped(int i, int n, Wrap wrap) {
   if (i >= 0 && i < n) return i;  // most are: divisions take longer than all else
   if (wrap == Wrap::clamp) return std::clamp(i, 0, n - 1);
@@ -136,7 +144,8 @@ std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p) {
   Rgb factor = material.base_color;
   if (!mesh.colors.empty())
     factor = factor * attribute_at(mesh.colors, mesh.triangles[p.triangle], p.at);
-  return {c[0] * factor.x, c[1] * factor.y, c[2] * factor.z, c[3] * material.alpha};
+  return {c[0] * factor.x, c[1] * factor.y, c[2] * factor.z,
+          c[3] * (material.alpha * alpha_between(mesh, p))};
 }
 
 namespace {

@@ -98,6 +98,7 @@ struct Mesh {
   std::vector<Vec3> normals;    ///< unit, object space; empty: flat shading
   std::vector<Vec2> uv0, uv1;   ///< TEXCOORD_0, TEXCOORD_1
   std::vector<Rgb> colors;      ///< linear, multiplies the base colour
+  std::vector<float> alphas;    ///< multiplies alpha
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint32_t> triangle_material;  ///< per triangle, index into Scene::materials
   /// Thin surfaces whose two sides each have light of their own: the number of the triangle that is

@@ -196,6 +196,34 @@ TEST(BaseColor, MultipliesFactorTextureAndVertexColour) {
   EXPECT_NEAR(c[3], 0.5f * 130 / 255, 1e-6);
 }
 
+// A ramp of alpha, (0, 1, 0) at the corners, times the material's 0.8.
+TEST(BaseColor, VertexAlphaMultipliesAlpha) {
+  Scene scene = one_triangle();
+  Material& m = scene.materials[0];
+  scene.meshes[0].alphas = {0, 1, 0};
+  m.alpha = 0.8f;
+  EXPECT_NEAR(base_color_at(scene, at_uv(0.625f, 0.25f))[3], 0.8f * 0.625f, 1e-6);
+  EXPECT_EQ(passage_at(scene, at_uv(0.625f, 0.25f)).coverage, 1) << "opaque: alpha is not asked";
+  m.alpha_mode = AlphaMode::blend, m.base_color = {0, 0, 0};
+  const Passage passage = passage_at(scene, at_uv(0.625f, 0.25f));
+  EXPECT_NEAR(passage.coverage, 0.5f, 1e-6);
+  EXPECT_NEAR(passage.tint.x, 0.5f, 1e-6);
+  m.alpha_mode = AlphaMode::mask, m.alpha_cutoff = 0.4f;  // where the ramp is below 0.5
+  EXPECT_FALSE(is_solid_at(scene, at_uv(0.49f, 0.1f)));
+  EXPECT_EQ(passage_at(scene, at_uv(0.49f, 0.1f)).coverage, 0);
+  EXPECT_TRUE(is_solid_at(scene, at_uv(0.51f, 0.1f)));
+  EXPECT_EQ(passage_at(scene, at_uv(0.51f, 0.1f)).coverage, 1);
+}
+
+TEST(BaseColor, EqualAlphasAreNotRounded) {
+  Scene scene = one_triangle();
+  scene.materials[0].alpha_mode = AlphaMode::mask, scene.materials[0].alpha_cutoff = 1;
+  scene.meshes[0].alphas = {1, 1, 1};
+  for (int i = 0; i < 50; ++i)
+    for (int j = 0; i + j < 50; ++j)
+      EXPECT_TRUE(is_solid_at(scene, at_uv(float(i) / 49, float(j) / 49))) << i << " " << j;
+}
+
 TEST(Reflectance, IsTheDiffusePartClampedTo099) {
   Scene scene = one_triangle();
   Material& m = scene.materials[0];

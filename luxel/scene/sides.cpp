@@ -70,6 +70,8 @@ bool let_through_alike(const Scene& scene, const Mesh& mesh, uint32_t material_a
       !lets_light_through(scene.materials[material_b]))
     return true;
   if (material_a != material_b) return false;
+  for (size_t k = 0; k < 3; ++k)
+    if (!mesh.alphas.empty() && mesh.alphas[a[k]] != mesh.alphas[b[k]]) return false;
   // Only the pictures that say where light goes through count. In a baked file TEXCOORD_1 differs:
   // each side has its own light.
   const auto looked_up_alike = [&](const TextureRef& ref) {
@@ -158,6 +160,7 @@ void add_backs(Scene& scene, uint32_t index, std::span<const uint8_t> chosen) {
       append_copy(mesh.uv0, v);
       append_copy(mesh.uv1, v);
       append_copy(mesh.colors, v);
+      append_copy(mesh.alphas, v);
       mesh.normals.push_back(-mesh.normals[v]);
     }
     return behind[v];

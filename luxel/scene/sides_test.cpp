@@ -47,6 +47,7 @@ TEST(Sides, ABackIsTheSamePlaceSeenFromBehind) {
       mesh.uv0.push_back({p.x, p.y});
       mesh.uv1.push_back({p.y, 1 - p.x});
       mesh.colors.push_back({p.x, p.y, 1});
+      mesh.alphas.push_back(0.3f * p.x + 0.2f * p.y);
     }
     Scene scene = scene_of(std::move(mesh));
     add_backs(scene, 0, std::vector<uint8_t>{1, 0});
@@ -63,6 +64,8 @@ TEST(Sides, ABackIsTheSamePlaceSeenFromBehind) {
     EXPECT_LT(length(at(m.uv0, p) - at(m.uv0, behind)), 1e-6f);
     EXPECT_LT(length(at(m.uv1, p) - at(m.uv1, behind)), 1e-6f);
     EXPECT_LT(length(at(m.colors, p) - at(m.colors, behind)), 1e-6f);
+    EXPECT_NEAR(base_color_at(scene, p)[3], base_color_at(scene, behind)[3], 1e-6f);
+    EXPECT_LT(base_color_at(scene, p)[3], 0.6f);
     if (with_normals) {
       EXPECT_LT(length(at(m.normals, p) + at(m.normals, behind)), 1e-6f);
     }
@@ -126,6 +129,13 @@ TEST(Sides, WhatIsNotTheOtherSideIsLeftAlone) {
   EXPECT_EQ(link_sides(holes), 0u);
   holes.materials[0].alpha_mode = AlphaMode::opaque;
   EXPECT_EQ(link_sides(holes), 1u);
+  // Corners say where holes are, too.
+  baked.meshes[0].other_side.clear();
+  baked.meshes[0].alphas = {0, 1, 1, 1, 0, 1, 1, 1};
+  Scene alike = baked;
+  EXPECT_EQ(link_sides(alike), 1u);
+  baked.meshes[0].alphas[4] = 1;
+  EXPECT_EQ(link_sides(baked), 0u);
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ void repeat(std::vector<T>& values, uint32_t vertex) {
 uint32_t repeat_vertex(Mesh& mesh, uint32_t vertex) {
   repeat(mesh.positions, vertex);
   repeat(mesh.uv0, vertex), repeat(mesh.uv1, vertex);
-  repeat(mesh.colors, vertex);
+  repeat(mesh.colors, vertex), repeat(mesh.alphas, vertex);
   return uint32_t(mesh.positions.size() - 1);
 }
 

@@ -105,9 +105,12 @@ TEST(SmoothNormals, SplitVerticesWhereTheSurfaceIsCreased) {
   smooth_normals(below, 29.9f * kOneDegree);
   EXPECT_TRUE(below.normals.empty());
   Mesh mesh = prism(12, false);
+  for (const Vec3& p : mesh.positions) mesh.alphas.push_back(0.5f + 0.5f * p.x);
   smooth_normals(mesh, 30 * kOneDegree);
   ASSERT_EQ(mesh.positions.size(), 48u) << "one of the side and one of the lid, for each of 24";
   ASSERT_EQ(mesh.normals.size(), 48u);
+  ASSERT_EQ(mesh.alphas.size(), 48u);
+  for (size_t v = 0; v < 48; ++v) EXPECT_EQ(mesh.alphas[v], 0.5f + 0.5f * mesh.positions[v].x);
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const uint32_t v : mesh.triangles[t]) {
       const Vec3 p = mesh.positions[v];

@@ -90,13 +90,21 @@ void repair_attributes(Scene& scene, Report& report) {
     c = luxel::is_finite(c) ? max(c, Rgb{}) : Rgb{1, 1, 1};
     ++bad_colors;
   };
+  const auto repair_alpha = [&](float& alpha) {
+    if (alpha >= 0 && alpha <= 1) return;
+    alpha = std::isfinite(alpha) ? std::clamp(alpha, 0.0f, 1.0f) : 1;
+    ++bad_colors;
+  };
   for (Mesh& mesh : scene.meshes) {
     std::for_each(mesh.uv0.begin(), mesh.uv0.end(), repair_uv);
     std::for_each(mesh.uv1.begin(), mesh.uv1.end(), repair_uv);
     std::for_each(mesh.colors.begin(), mesh.colors.end(), repair_color);
+    std::for_each(mesh.alphas.begin(), mesh.alphas.end(), repair_alpha);
   }
   if (bad_uvs) report.warn("{} texture coordinates are not finite; set to 0", bad_uvs);
-  if (bad_colors) report.warn("{} vertex colours are negative or not finite; repaired", bad_colors);
+  if (bad_colors)
+    report.warn("{} vertex colours are negative or not finite, or alpha above 1; repaired",
+                bad_colors);
 }
 
 bool is_finite(const TextureRef& ref) {

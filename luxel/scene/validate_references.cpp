@@ -8,7 +8,8 @@ Status check_arrays(const Mesh& mesh, const std::string& where) {
   const std::pair<const char*, size_t> arrays[] = {{"normals", mesh.normals.size()},
                                                    {"uv0", mesh.uv0.size()},
                                                    {"uv1", mesh.uv1.size()},
-                                                   {"colors", mesh.colors.size()}};
+                                                   {"colors", mesh.colors.size()},
+                                                   {"alphas", mesh.alphas.size()}};
   for (const auto& [name, size] : arrays)
     if (size != 0 && size != mesh.positions.size())
       return fail(ErrorCode::bad_input, "{} has {} {} for {} positions; must be none or as many",

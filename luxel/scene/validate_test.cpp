@@ -46,6 +46,18 @@ TEST(Validate, GoodSceneIsLeftAlone) {
   EXPECT_EQ(scene.meshes[0].triangles.size(), 2u);
 }
 
+TEST(Validate, VertexColoursAndAlphasAreRepaired) {
+  Scene scene = good_scene();
+  scene.meshes[0].colors = {{-1, 0, 0}, {0, NAN, 0}, {0, 0, 2}, {1, 1, 1}};
+  scene.meshes[0].alphas = {-0.5f, INFINITY, 2, 0.25f};
+  EXPECT_THAT(warnings_of(scene),
+              HasSubstr("5 vertex colours are negative or not finite, or alpha above 1; repaired"));
+  EXPECT_EQ(scene.meshes[0].colors, (std::vector<Rgb>{{0, 0, 0}, {1, 1, 1}, {0, 0, 2}, {1, 1, 1}}));
+  EXPECT_EQ(scene.meshes[0].alphas, (std::vector<float>{0, 1, 1, 0.25f}));
+  scene.meshes[0].alphas.pop_back();
+  EXPECT_THAT(error_of(scene), HasSubstr("3 alphas for 4 positions"));
+}
+
 TEST(Validate, ZeroAreaTrianglesAreDroppedAndCounted) {
   Scene scene = good_scene();
   Mesh& mesh = scene.meshes[0];

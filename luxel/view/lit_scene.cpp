@@ -47,6 +47,7 @@ scene::Mesh lit_mesh(const scene::Mesh& mesh, const export_::LightmapCoordinates
   out.uv0 = export_::picked(mesh.uv0, vertices.source),
   out.uv1 = export_::picked(mesh.uv1, vertices.source);
   out.colors = export_::picked(mesh.colors, vertices.source);
+  out.alphas = export_::picked(mesh.alphas, vertices.source);
   light_uv = std::move(vertices.lightmap);
   return out;
 }

@@ -31,7 +31,7 @@ uniform mat3 mapTransform, metalTransform, emissionTransform;
 in vec3 position;
 in vec2 uv1;
 #ifdef HAS_COLOR
-in vec3 color;
+in vec4 color;
 #endif
 #ifdef HAS_UV
 in vec2 uv;
@@ -42,6 +42,7 @@ in vec2 uv2;
 centroid out vec2 atLight;
 out vec2 atMap, atMetal, atEmission;
 out vec3 tint;
+out float clear;  // 1 - alpha: where all corners have 0, no rounding leaves a hole
 void main() {
   atLight = uv1;
 #ifdef MAP_UV
@@ -54,9 +55,11 @@ void main() {
   atEmission = (emissionTransform * vec3(EMISSION_UV, 1.0)).xy;
 #endif
 #ifdef HAS_COLOR
-  tint = color;
+  tint = color.rgb;
+  clear = 1.0 - color.a;
 #else
   tint = vec3(1.0);
+  clear = 0.0;
 #endif
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
@@ -81,10 +84,11 @@ uniform int show;
 centroid in vec2 atLight;
 in vec2 atMap, atMetal, atEmission;
 in vec3 tint;
+in float clear;
 out vec4 pixel;
 ${toneMap}
 void main() {
-  vec4 base = vec4(baseColor * tint, alpha);
+  vec4 base = vec4(baseColor * tint, alpha * (1.0 - clear));
   float metalness = metallic;
   vec3 emitted = emission;
 #ifdef MAP_UV

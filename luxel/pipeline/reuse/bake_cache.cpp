@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// The version of the cache's files; goes up when what they hold changes.
-constexpr int kFormat = 5;
+constexpr int kFormat = 6;
 RecordKey key_of(size_t part) { return {0, part}; }
 
 fs::path light_file(const fs::path& folder) { return folder / "light.luxel"; }

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 /// The version of the records' content; goes up when what a part holds, or how it is computed,
 /// changes.
-constexpr int kCheckpointFormat = 4;
+constexpr int kCheckpointFormat = 5;
 
 json digests_json(std::span<const scene::ItemDigest> items) {
   json out = json::array();

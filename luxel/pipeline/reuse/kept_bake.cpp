@@ -77,9 +77,9 @@ concept Like = std::is_same_v<std::remove_const_t<Struct>, Kind>;
 
 template <class Visit>
 void walk(Visit& visit, Like<scene::Mesh> auto& m) {
-  auto& [name, positions, normals, uv0, uv1, colors, triangles, material, other_side] = m;
+  auto& [name, positions, normals, uv0, uv1, colors, alphas, triangles, material, other_side] = m;
   visit(name), visit(positions), visit(normals), visit(uv0), visit(uv1), visit(colors);
-  visit(triangles), visit(material), visit(other_side);
+  visit(alphas), visit(triangles), visit(material), visit(other_side);
 }
 
 template <class Visit>

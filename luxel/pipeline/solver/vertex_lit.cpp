@@ -31,6 +31,9 @@ struct MeshBuilder {
     if (!own.colors.empty())
       color = color * interpolate(own.colors[t[0]], own.colors[t[1]], own.colors[t[2]], p.at);
     mesh.colors.push_back(color);
+    if (!own.alphas.empty())
+      mesh.alphas.push_back(
+          interpolate(own.alphas[t[0]], own.alphas[t[1]], own.alphas[t[2]], p.at));
     return uint32_t(mesh.positions.size() - 1);
   }
 
@@ -39,7 +42,7 @@ struct MeshBuilder {
     const scene::Instance& instance = scene.instances[node.instance];
     const scene::Mesh& own = scene.meshes[instance.mesh];
     const bool shared = field.receivers.kind == hemicube::ElementKind::vertex && own.uv0.empty() &&
-                        own.uv1.empty() && own.colors.empty();
+                        own.uv1.empty() && own.colors.empty() && own.alphas.empty();
     std::array<uint32_t, 3> corners{};
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t v = node.vertex[k];

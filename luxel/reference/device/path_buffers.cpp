@@ -15,6 +15,7 @@ namespace {
 
 struct PathTriangle {
   std::array<Vec3, 3> corner, normal, color;
+  std::array<float, 3> alpha;
   Vec3 front;
   std::array<Vec2, 3> base, metal, emission;
   uint32_t material;
@@ -26,7 +27,7 @@ struct PathTriangle {
   static constexpr uint32_t kBasePlaced = 1, kMetalPlaced = 2, kEmissionPlaced = 4, kCurved = 8,
                             kBends = 16;
 };
-static_assert(sizeof(PathTriangle) == 212);
+static_assert(sizeof(PathTriangle) == 224);
 
 struct PathMaterial {
   Rgb base_color, emission;
@@ -84,6 +85,7 @@ PathTriangle path_triangle(const TracedScene& world, uint32_t instance, uint32_t
   for (size_t k = 0; k < 3; ++k) {
     const uint32_t vertex = mesh.triangles[triangle][k];
     t.color[k] = mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[vertex];
+    t.alpha[k] = mesh.alphas.empty() ? 1 : mesh.alphas[vertex];
     if (!mesh.normals.empty())
       t.normal[k] = transform_normal(placed.world_from_object, mesh.normals[vertex]);
   }

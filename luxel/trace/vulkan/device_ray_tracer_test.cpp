@@ -257,9 +257,10 @@ TEST_P(DeviceRays, DoNotSlipThroughASharedSurface) {
 
 /// Three quads after each other in z: a mask that repeats, turned, a mirrored blend, and unfiltered
 /// glass with metal in it; each with a texture of noise. Half of a fourth one blocks what is left.
-scene::Scene see_through_scene() {
+scene::Scene see_through_scene(bool with_alphas = false) {
   scene::Scene scene = quad_scene({});
   scene::Mesh& quad = scene.meshes[0];
+  if (with_alphas) quad.alphas = {1, 0.5f, 0.9f, 0.7f};
   quad.uv0 = {{-1.2f, 0.1f}, {1.7f, 0}, {2, 3}, {0.3f, 2.5f}};
   RandomStream random{11};
   for (const int size : {5, 8}) {
@@ -297,15 +298,13 @@ scene::Scene see_through_scene() {
 
 // Both let the same rays pass: the same texels are looked up, and the same numbers drawn. A few lie
 // within rounding of a mask's edge, of an unfiltered texel's, or of the number drawn.
-TEST_P(DeviceRays, PassSurfacesByTheSameChance) {
-  const scene::Scene scene = see_through_scene();
+void expect_the_same_chance(DeviceRayTracer& device, const scene::Scene& scene) {
   std::vector<Ray> rays;
   RandomStream random{5};
   for (int i = 0; i < 20000; ++i) {
     const Vec2 u = random.next2(), tilt = random.next2();
     rays.push_back({{u.x, u.y, 1}, 0, {0.1f * tilt.x - 0.05f, 0.1f * tilt.y - 0.05f, -1}, 9});
   }
-  DeviceRayTracer device = built(scene);
   const std::vector<Hit> hits = hits_of(device, rays);
   const auto processor = RayTracer::build(scene);
   std::vector<Hit> expected(rays.size());
@@ -321,6 +320,14 @@ TEST_P(DeviceRays, PassSurfacesByTheSameChance) {
   }
   for (const size_t times : met) EXPECT_GT(times, 500u);
   EXPECT_LE(others, 10u);
+}
+
+TEST_P(DeviceRays, PassSurfacesByTheSameChance) {
+  for (const bool with_alphas : {false, true}) {
+    const scene::Scene scene = see_through_scene(with_alphas);
+    DeviceRayTracer device = built(scene);
+    expect_the_same_chance(device, scene);
+  }
 }
 
 // The chance follows from the ray in the world and the instance, also where the mesh is shared.

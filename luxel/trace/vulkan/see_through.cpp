@@ -14,6 +14,12 @@ uint32_t placed(const scene::Mesh& mesh, const scene::Material& m) {
          uint32_t(!texture_coordinates(mesh, m.transmission_texture).empty()) << 2;
 }
 
+std::array<float, 3> alphas_of(const scene::Mesh& mesh, uint32_t triangle) {
+  if (mesh.alphas.empty()) return {1, 1, 1};
+  const auto [a, b, c] = mesh.triangles[triangle];
+  return {mesh.alphas[a], mesh.alphas[b], mesh.alphas[c]};
+}
+
 }  // namespace
 
 SeeThroughFinder::SeeThroughFinder(const scene::Scene& scene, SeeThrough& out)
@@ -43,7 +49,8 @@ void SeeThroughFinder::find(std::span<DeviceTriangle> triangles) {
     out_.triangles.push_back({drawn.instance, drawn.triangle, there, placed(mesh, m),
                               places_in_picture(mesh, drawn.triangle, m.base_color_texture),
                               places_in_picture(mesh, drawn.triangle, m.metallic_texture),
-                              places_in_picture(mesh, drawn.triangle, m.transmission_texture)});
+                              places_in_picture(mesh, drawn.triangle, m.transmission_texture),
+                              alphas_of(mesh, drawn.triangle)});
     t.see_through = uint32_t(out_.triangles.size());
   }
 }

@@ -27,8 +27,9 @@ struct SeeThroughTriangle {
   uint32_t material = 0;  ///< into SeeThrough::materials
   uint32_t placed = 0;    ///< bits 0 to 2: whether the mesh has coordinates for base, metal, glass
   std::array<Vec2, 3> base, metal, glass;
+  std::array<float, 3> alpha;  ///< of its corners
 };
-static_assert(sizeof(SeeThroughTriangle) == 88);
+static_assert(sizeof(SeeThroughTriangle) == 100);
 
 struct SeeThrough {
   std::vector<SeeThroughMaterial> materials;

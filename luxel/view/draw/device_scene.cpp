@@ -110,7 +110,8 @@ DeviceVertex vertex_of(const LitMesh& lit, uint32_t i) {
           light,
           light,
           mesh.normals.empty() ? Vec3{} : mesh.normals[i],
-          mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[i]};
+          mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[i],
+          mesh.alphas.empty() ? 0 : 1 - mesh.alphas[i]};
 }
 
 /// Triangles of all meshes in the making.

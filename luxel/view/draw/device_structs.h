@@ -14,8 +14,9 @@ struct DeviceVertex {
   Vec2 light, light_behind;  ///< places in the lightmap: its own, that of the other side
   Vec3 normal;               ///< 0: that of the facet
   Rgb color;
+  float clear = 0;  ///< 1 - alpha
 };
-static_assert(sizeof(DeviceVertex) == 68);
+static_assert(sizeof(DeviceVertex) == 72);
 
 struct DeviceLookUp {
   Vec3 u{1, 0, 0}, v{0, 1, 0};

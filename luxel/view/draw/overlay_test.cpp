@@ -264,6 +264,10 @@ TEST_F(OverlayTest, LeavesOutWhatPicturesOfLightLeaveOut) {
       at.scene.materials[0].alpha = 0.4f;
       at.scene.materials[0].alpha_mode = scene::AlphaMode::mask;
       EXPECT_EQ(pixel_of(picture_of(at, frame), 50, 50), behind);
+      at.scene.materials[0].alpha = 1;
+      EXPECT_NE(pixel_of(picture_of(at, frame), 50, 50), behind);
+      at.scene.meshes[0].alphas.assign(at.scene.meshes[0].positions.size(), 0.4f);
+      EXPECT_EQ(pixel_of(picture_of(at, frame), 50, 50), behind);
     }
 }
 

@@ -151,6 +151,12 @@ TEST_F(PainterTest, HolesOfMasksShowWhatIsBehind) {
   expect_radiance(middle_of(lit, frame), lit.scene.materials[0].base_color * (3 / kPi));
   lit.scene.materials[0].alpha_mode = scene::AlphaMode::mask;
   expect_radiance(middle_of(lit, frame), {9, 9, 9});
+  lit.scene.materials[0].alpha = 1;
+  lit.scene.meshes[0].alphas.assign(lit.scene.meshes[0].positions.size(), 0.4f);
+  expect_radiance(middle_of(lit, frame), {9, 9, 9});
+  lit.scene.meshes[0].alphas.clear();
+  lit.scene.materials[0].alpha_cutoff = 1;
+  expect_radiance(middle_of(lit, frame), lit.scene.materials[0].base_color * (3 / kPi));
 }
 
 // Nearer than what stands before it, drawn first or last.

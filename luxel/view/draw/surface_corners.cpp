@@ -29,6 +29,7 @@ SurfaceCorner corner_of(const scene::Scene& scene, const Part& part, size_t k) {
   if (!mesh.uv0.empty()) out.uv0 = between(mesh.uv0);
   if (!mesh.uv1.empty()) out.uv1 = between(mesh.uv1);
   if (!mesh.colors.empty()) out.color = between(mesh.colors);
+  if (!mesh.alphas.empty()) out.clear = 1 - between(mesh.alphas);
   out.element = part.element[k], out.item = part.item;
   return out;
 }

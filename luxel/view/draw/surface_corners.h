@@ -14,10 +14,11 @@ struct SurfaceCorner {
   Vec3 position, normal;  ///< [m]; the shading normal, on the side of the front
   Vec2 uv0, uv1;
   Rgb color{1, 1, 1};    ///< of the vertex
+  float clear = 0;       ///< 1 - alpha of the vertex
   uint32_t element = 0;  ///< whose light it has
   uint32_t item = 0;     ///< the colour that stands for its triangle: 0xbbggrr, display values
 };
-static_assert(sizeof(SurfaceCorner) == 60);
+static_assert(sizeof(SurfaceCorner) == 64);
 
 /// Triangles of one material, which are drawn together.
 struct CornerRange {

@@ -16,6 +16,7 @@ layout(location = 2) in vec2 at_atlas;
 layout(location = 3) in vec3 position;
 layout(location = 4) in vec3 weights;
 layout(location = 5) flat in uint chart;
+layout(location = 6) in float clear;
 layout(location = 0) out vec4 seen;
 
 // view::Show
@@ -59,7 +60,7 @@ bool is_on_seam() {
 
 void main() {
   Material m = materials.at[material];
-  float alpha = texture(map, at_map).a * m.alpha;
+  float alpha = texture(map, at_map).a * m.alpha * (1 - clear);
   vec2 size = vec2(textureSize(light, 0));
   vec3 normal = cross(dFdx(position), dFdy(position));
   float facing = abs(dot(normal, look.forward)) / max(length(normal), 1e-30);

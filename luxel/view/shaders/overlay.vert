@@ -9,6 +9,7 @@ layout(location = 2) out vec2 at_atlas;
 layout(location = 3) out vec3 position;
 layout(location = 4) out vec3 weights;  // of the triangle's corners
 layout(location = 5) flat out uint chart;
+layout(location = 6) out float clear;
 
 void main() {
   Vertex v = vertices.at[look.corners.at[gl_VertexIndex]];
@@ -22,5 +23,6 @@ void main() {
   at_map = vec2(dot(m.map.u, uv), dot(m.map.v, uv));
   uint corner = gl_VertexIndex % 3;
   weights = vec3(corner == 0, corner == 1, corner == 2);
+  clear = v.clear;
   chart = look.charts.at[gl_VertexIndex / 3];
 }

@@ -8,6 +8,7 @@ struct Vertex {
   vec2 light, light_behind;  // places in the lightmap: its own, that of the other side
   vec3 normal;  // 0: that of the facet
   vec3 color;
+  float clear;  // 1 - alpha: where all corners have 0, no rounding leaves a hole
 };
 struct LookUp {
   vec3 u, v;  // u = dot(LookUp.u, (uv, 1))

@@ -5,8 +5,9 @@
 
 layout(binding = 0) uniform sampler2D map;
 layout(location = 0) in vec2 at_map;
+layout(location = 1) in float clear;
 
 void main() {
   Material m = materials.at[material];
-  if (texture(map, at_map).a * m.alpha < m.cutoff) discard;
+  if (texture(map, at_map).a * m.alpha * (1 - clear) < m.cutoff) discard;
 }

@@ -4,6 +4,7 @@
 #include "shadow.glsl"
 
 layout(location = 0) out vec2 at_map;
+layout(location = 1) out float clear;
 
 void main() {
   Vertex v = vertices.at[gl_VertexIndex];
@@ -13,4 +14,5 @@ void main() {
   gl_Position = clip_from_world * vec4(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p), 1);
   vec3 uv = vec3(look_up.uv_set == 0 ? v.uv0 : v.uv1, 1);
   at_map = vec2(dot(look_up.u, uv), dot(look_up.v, uv));
+  clear = v.clear;
 }

@@ -27,6 +27,7 @@ layout(location = 8) in vec3 from_eye;
 layout(location = 9) centroid in vec3 from_eye_inside;
 layout(location = 10) in vec3 smooth_normal;
 layout(location = 11) flat in float turned;
+layout(location = 12) in float clear;
 layout(location = 0) out vec4 seen;
 
 // What a pipeline is made for: branches that are not taken cost as much as those that are where
@@ -77,7 +78,7 @@ vec3 irradiance_at(vec2 place) {
 void main() {
   Material m = materials.at[material];
   vec3 facet = facet_normal();
-  vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha);
+  vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha * (1 - clear));
   if (base.a < m.cutoff) discard;
   vec3 emitted = vec3(0);
   float metallic = 0;

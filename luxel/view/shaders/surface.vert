@@ -14,6 +14,7 @@ layout(location = 8) out vec3 from_eye;
 layout(location = 9) centroid out vec3 from_eye_inside;
 layout(location = 10) out vec3 normal;
 layout(location = 11) flat out float turned;  // < 0 where the instance is mirrored
+layout(location = 12) out float clear;
 
 vec2 looked_up(LookUp look_up, Vertex v) {
   vec3 uv = vec3(look_up.uv_set == 0 ? v.uv0 : v.uv1, 1);
@@ -46,4 +47,5 @@ void main() {
   at_through_share = looked_up(m.through_share, v);
   at_through_tint = looked_up(m.through_tint, v);
   tint = v.color;
+  clear = v.clear;
 }

@@ -23,6 +23,7 @@ layout(location = 9) in vec3 weights;
 layout(location = 10) flat in vec3 facing;
 layout(location = 11) flat in vec3 highlight;
 layout(location = 12) flat in uint item;
+layout(location = 13) in float clear;
 layout(location = 0) out vec4 seen;
 
 const float pi = 3.14159265358979;
@@ -72,7 +73,7 @@ vec3 radiance(vec4 base) {
 
 void main() {
   Material m = materials.at[material];
-  vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha);
+  vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha * (1 - clear));
   float looks_at_viewer = abs(dot(normalize(normal), way_to_viewer(place)));
   if (base.a < m.cutoff) discard;
   vec3 color;

@@ -6,6 +6,7 @@ struct Corner {
   vec3 position, normal;
   vec2 uv0, uv1;
   vec3 color;
+  float clear;
   uint element, item;
 };
 struct Element {

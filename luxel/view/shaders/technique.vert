@@ -17,6 +17,7 @@ layout(location = 9) out vec3 weights;  // of the triangle's corners
 layout(location = 10) flat out vec3 facing;
 layout(location = 11) flat out vec3 highlight;
 layout(location = 12) flat out uint item;
+layout(location = 13) out float clear;
 
 vec2 looked_up(LookUp look_up, Corner v) {
   vec3 uv = vec3(look_up.uv_set == 0 ? v.uv0 : v.uv1, 1);
@@ -43,6 +44,7 @@ void main() {
   at_glow = looked_up(m.glow, v);
   at_through_share = looked_up(m.through_share, v);
   tint = v.color;
+  clear = v.clear;
   normal = v.normal * side;
   to_viewer = way_to_viewer(v.position);
   place = v.position;

@@ -11,6 +11,7 @@ struct PathTriangle {
   vec3 corner[3];
   vec3 normal[3];  // of the vertices, of any length
   vec3 color[3];   // of the vertices
+  float alpha[3];  // of the vertices
   vec3 front;      // unit
   vec2 base[3], metal[3], emission[3];  // in the pictures
   uint material;
@@ -82,7 +83,7 @@ vec3 between(vec3 values[3], vec2 uv) { return values[0] * (1 - uv.x - uv.y) + v
 // scene::base_color_at()
 vec4 base_color_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
   vec4 c = colour_at(setup.texels, setup.linear_of_byte, m.base, (t.flags & kBasePlaced) != 0, t.base, uv);
-  return vec4(c.xyz * (m.base_color * between(t.color, uv)), c.w * m.alpha);
+  return vec4(c.xyz * (m.base_color * between(t.color, uv)), c.w * (m.alpha * alpha_between(t.alpha, uv)));
 }
 
 // scene::reflectance_at(), of what scatters no light through.

@@ -59,6 +59,11 @@ vec4 colour_at(Texels texels, Floats linear_of_byte, Picture p, bool has_places,
              mix(linear_texel(texels, linear_of_byte, p, c.x, c.y + 1), linear_texel(texels, linear_of_byte, p, c.x + 1, c.y + 1), f.x), f.y);
 }
 
+// Of a triangle's corners: scene.cpp has the same one.
+float alpha_between(float alpha[3], vec2 uv) {
+  return alpha[0] + (alpha[1] - alpha[0]) * uv.x + (alpha[2] - alpha[0]) * uv.y;
+}
+
 // A picture on a triangle.
 struct PlacedPicture {
   Picture picture;

@@ -15,6 +15,7 @@ struct SeeThroughTriangle {
   uint instance, triangle, material;
   uint placed;  // bits 0 to 2: base, metal, glass
   vec2 base[3], metal[3], glass[3];
+  float alpha[3];
 };
 layout(buffer_reference, scalar) readonly buffer SeeThroughMaterials { SeeThroughMaterial at[]; };
 layout(buffer_reference, scalar) readonly buffer SeeThroughTriangles { SeeThroughTriangle at[]; };
@@ -62,7 +63,7 @@ float chance_of(vec3 origin, vec3 direction, uint instance, uint triangle) {
 float coverage_at(SeeThrough s, uint number, vec2 uv) {
   SeeThroughTriangle t = s.triangles.at[number];
   SeeThroughMaterial m = s.materials.at[t.material];
-  float alpha = picture_at(s.texels, m.base, (t.placed & 1u) != 0, t.base, uv, 3) * m.alpha;
+  float alpha = picture_at(s.texels, m.base, (t.placed & 1u) != 0, t.base, uv, 3) * (m.alpha * alpha_between(t.alpha, uv));
   if (m.mode == kMask && alpha < m.cutoff) return 0;
   float coverage = m.mode == kBlend ? clamp(alpha, 0.0, 1.0) : 1.0;
   if (m.transmission > 0) {

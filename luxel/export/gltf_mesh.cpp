@@ -48,7 +48,7 @@ TexcoordSlots append_texcoords(Glb& glb, const scene::Mesh& mesh, const scene::M
   return slots;
 }
 
-/// What of COLOR_0 no picture holds.
+/// The parts of COLOR_0 that no picture holds.
 struct Shown {
   bool colors = true, alphas = true;
 };

@@ -14,10 +14,7 @@ bool has_surroundings(const Scene& scene) {
 
 /// A material whose textures are numbered from `first` on.
 Material moved(Material material, uint32_t first) {
-  for (TextureRef* ref :
-       {&material.base_color_texture, &material.metallic_texture, &material.emission_texture,
-        &material.normal_texture, &material.transmission_texture,
-        &material.diffuse_transmission_texture, &material.diffuse_transmission_color_texture})
+  for (TextureRef* ref : textures_of(material))
     if (ref->texture != kNone) ref->texture += first;
   return material;
 }

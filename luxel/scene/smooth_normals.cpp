@@ -182,7 +182,10 @@ void smooth_normals(Mesh& mesh, std::span<const uint32_t> group) {
   if (!mesh.normals.empty()) return;
   const std::vector<Face> face = faces_of(mesh);
   CornerSets sets = corners_that_share(mesh, [&](uint32_t a, uint32_t b) {
-    return face[a].area > 0 && face[b].area > 0 && group[a] == group[b] && group[a] != 0;
+    // The halves of a flat face share their corners whatever its group.
+    return face[a].area > 0 && face[b].area > 0 &&
+           ((group[a] == group[b] && group[a] != 0) ||
+            length(face[a].normal - face[b].normal) < kFlat);
   });
   set_normals(mesh, face, sets);
 }

@@ -17,7 +17,7 @@ namespace luxel::scene {
 /// area share with none.
 void smooth_normals(Mesh& mesh, float crease_rad);
 /// The same where triangles have smoothing groups, one each: two share the normals of their common
-/// edge, however it bends, if both have the same group and that is not 0.
+/// edge, however it bends, if both have the same group and that is not 0, or if it does not bend.
 void smooth_normals(Mesh& mesh, std::span<const uint32_t> group);
 
 }  // namespace luxel::scene

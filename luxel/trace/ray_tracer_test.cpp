@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "luxel/base/random.h"
+#include "luxel/base/vec_double.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/sides.h"
+#include "luxel/trace/surface_starts_test_support.h"
 
 namespace luxel::trace {
 namespace {
@@ -154,6 +156,33 @@ TEST(OffsetOrigin, LeavesTheSurfaceAtAnyScale) {
           EXPECT_FALSE(hit.back_face);
           EXPECT_FALSE(hit.instance == instance && hit.triangle == t);
         }
+  }
+}
+
+// No ray meets the plane that it leaves: not its own triangle, not the other half of its quad, not
+// a coplanar copy of that with other triangles. Starts lie no further off it than they must.
+TEST(OffSurface, LeavesItsQuad) {
+  for (const testing::QuadAndCopy& on : testing::quads_with_copies()) {
+    const std::vector<Ray> rays = testing::rays_off(on);
+    std::vector<Hit> hits(rays.size());
+    const RayTracer tracers[] = {*RayTracer::build(on.scene), *RayTracer::build(on.scene, 0),
+                                 *RayTracer::build_apart(on.scene)};
+    for (const RayTracer& tracer : tracers) {
+      tracer.closest_hits(rays, hits);
+      EXPECT_EQ(std::ranges::count_if(hits, [](const Hit& h) { return h.instance < 2; }), 0)
+          << on.name;
+    }
+    const scene::Triangle3 t = scene::world_triangle(on.scene, 0, 0);
+    const DVec3 a = to_double(t.a);
+    const DVec3 n = normalize(cross(to_double(t.b) - a, to_double(t.c) - a));
+    const float size_m = scene::size_for_rounding(on.scene, 0, 0);
+    for (const Ray& ray : rays) {
+      const double height = dot(to_double(ray.origin) - a, n);
+      const double most =
+          0x1p-19 * double(std::max(max_component(max(ray.origin, -ray.origin)), size_m));
+      EXPECT_GT(height, 0) << on.name;
+      EXPECT_LT(height, most) << on.name;
+    }
   }
 }
 

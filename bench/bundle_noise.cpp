@@ -44,14 +44,12 @@ Rgb light_along(const NoiseScene& in, const trace::Hit& hit, Vec3 direction) {
 /// Luminance of the light that each texel gathers.
 std::vector<float> gathered_light(const NoiseScene& in) {
   const transport::Elements& e = in.p.elements;
-  const float diagonal_m = scene::world_bounds(in.p.scene).diagonal();
   std::vector<float> out(e.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
     gather::RayBatch batch;
     std::vector<trace::Hit> hits(kNoiseRays);
     for (size_t i = begin; i < end; ++i) {
-      gather::fill_rays(trace::offset_origin(e.position[i], e.geometric_normal[i], diagonal_m),
-                        e.normal[i], e.geometric_normal[i], in.seed_of(uint32_t(i)),
+      gather::fill_rays(e.position[i], e.normal[i], e.geometric_normal[i], in.seed_of(uint32_t(i)),
                         {0, uint32_t(kNoiseRays)}, batch);
       in.p.tracer->closest_hits(batch.rays, hits);
       for (size_t k = 0; k < hits.size(); ++k)

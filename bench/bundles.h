@@ -36,7 +36,6 @@ Bundles make_bundles(const validate::Prepared& p, std::span<const uint32_t> texe
 struct BundleTrace {
   const validate::Prepared& p;
   uint32_t samples = 0;
-  float diagonal_m = 0;
   std::vector<std::vector<Vec3>> directions{};  ///< of each set, about +z, in the order of cells
   TriangleGroups triangles{};
 };

@@ -85,15 +85,13 @@ class BareEmbree {
 /// Rays per second of the bare loop over gather's own rays; making the rays is not counted.
 double bare_rate(const validate::Prepared& p, int samples) {
   const BareEmbree embree(p.scene);
-  const float diagonal = scene::world_bounds(p.scene).diagonal();
   std::atomic<uint64_t> nanoseconds{0};
   parallel_for(p.elements.size(), 1024, [&](size_t begin, size_t end) {
     std::vector<trace::Ray> rays(size_t(samples) * (end - begin));
     for (size_t i = begin; i < end; ++i)
-      gather::element_rays(
-          trace::offset_origin(p.elements.position[i], p.elements.geometric_normal[i], diagonal),
-          p.elements.normal[i], p.elements.geometric_normal[i], hash64(1 ^ 0x6a7e, i),
-          std::span(rays).subspan((i - begin) * size_t(samples), size_t(samples)));
+      gather::element_rays(p.elements.position[i], p.elements.normal[i],
+                           p.elements.geometric_normal[i], hash64(1 ^ 0x6a7e, i),
+                           std::span(rays).subspan((i - begin) * size_t(samples), size_t(samples)));
     const auto start = Clock::now();
     embree.intersect(rays);
     nanoseconds += uint64_t(seconds_since(start) * 1e9);

@@ -29,7 +29,6 @@ struct Rays {
 };
 
 Rays rays_of(const validate::Prepared& p, size_t most) {
-  const float diagonal = scene::world_bounds(p.scene).diagonal();
   const size_t groups = p.elements.size() / kTogether;
   const size_t wanted = std::min(groups, most / (kTogether * kRaysPerElement));
   Rays out;
@@ -43,9 +42,8 @@ Rays rays_of(const validate::Prepared& p, size_t most) {
         const std::span own =
             std::span(out.by_element)
                 .subspan((g * kTogether + k) * kRaysPerElement, size_t(kRaysPerElement));
-        gather::element_rays(
-            trace::offset_origin(p.elements.position[i], p.elements.geometric_normal[i], diagonal),
-            p.elements.normal[i], p.elements.geometric_normal[i], gather::seed_of_rays(1, i), own);
+        gather::element_rays(p.elements.position[i], p.elements.normal[i],
+                             p.elements.geometric_normal[i], gather::seed_of_rays(1, i), own);
         for (size_t s = 0; s < size_t(kRaysPerElement); ++s)
           out.sorted[(g * size_t(kRaysPerElement) + s) * kTogether + k] = own[s];
       }
@@ -113,9 +111,8 @@ Result<double> made_rate(const trace::DeviceRayTracer& tracer, const validate::P
   for (auto* values : {&some.position, &some.normal, &some.geometric_normal})
     values->resize(std::min(values->size(), fit));
   some.reflectance.clear();
-  const float diagonal_m = scene::world_bounds(p.scene).diagonal();
   LUXEL_TRY(device::FirstHits hits,
-            device::prepare_first_hits(tracer, commands, some, diagonal_m, {kRaysPerElement, 1}));
+            device::prepare_first_hits(tracer, commands, some, {kRaysPerElement, 1}));
   return median_rate(hits.element_count * kRaysPerElement,
                      [&] { return device::trace_first_hits(tracer, commands, hits); });
 }

@@ -9,6 +9,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/pipeline/solver/hierarchical.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/solve/hierarchical/represent.h"
@@ -69,8 +70,8 @@ Result<std::vector<std::string>> picture_row(std::string name, const scene::Scen
   std::vector<Rgb> solved;
   for (const trace::Hit& hit : trace::visible_hits(scene, tracer, rays)) {
     if (!hit.found()) continue;
-    position.push_back(scene::world_position(scene, hit.point()));
     normal.push_back(scene::front_normal(scene, hit.instance, hit.triangle));
+    position.push_back(scene::off_surface(scene, hit.point(), normal.back()));
     solved.push_back(h::irradiance_at(solution, mesh, scene, hit.point()));
   }
   LUXEL_TRY(const validate::Judged judged,
@@ -105,8 +106,7 @@ double standard_errors_off(const h::Solution& s, const scene::Scene& scene,
                            const trace::RayTracer& tracer, const h::Receiver& at, Rgb exact,
                            uint64_t seed) {
   const auto frame = frame_around(to_float(at.normal));
-  const Vec3 from =
-      trace::offset_origin(to_float(at.position), to_float(at.geometric_normal), s.diagonal_m);
+  const Vec3 from = at.start();
   RandomStream random{seed};
   double sum = 0, squares = 0;
   for (uint32_t k = 0; k < kRays; ++k) {

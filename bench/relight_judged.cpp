@@ -83,7 +83,7 @@ Result<std::unique_ptr<Place>> make_place(scene::Scene scene, const JudgeSetting
   for (const scene::SurfacePoint& p :
        scene::points_uniform_in_area(out->scene, settings.points, kSeed)) {
     const transport::SmoothPoint at = transport::smooth_point(out->scene, p);
-    out->points.position.push_back(at.position), out->points.normal.push_back(at.normal);
+    out->points.position.push_back(at.start), out->points.normal.push_back(at.normal);
     out->points.geometric_normal.push_back(at.geometric_normal);
   }
   return out;

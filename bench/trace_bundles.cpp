@@ -44,11 +44,6 @@ std::span<const uint32_t> texels_of(const Bundles& all, const Bundle& bundle) {
   return std::span(all.element).subspan(bundle.first, bundle.end - bundle.first);
 }
 
-Vec3 origin_of(const BundleTrace& in, uint32_t i) {
-  return trace::offset_origin(in.p.elements.position[i], in.p.elements.geometric_normal[i],
-                              in.diagonal_m);
-}
-
 /// Every bundle looks at all groups of triangles, and shares what it finds among its rays.
 bool is_projected(const BundleTrace& in, const Bundle& bundle) {
   const size_t rays = bundle.end - bundle.first;
@@ -85,7 +80,7 @@ void trace_bundle(const BundleTrace& in, std::span<const uint32_t> texels, const
   b.hits.resize(texels.size() * kDirectionsAtATime);
   b.frames.clear(), b.origins.clear();
   for (const uint32_t i : texels) {
-    b.origins.push_back(origin_of(in, i));
+    b.origins.push_back(in.p.elements.position[i]);
     b.frames.push_back(frame_around(in.p.elements.normal[i]));
   }
   RayStarts starts;
@@ -124,7 +119,7 @@ Bundles make_bundles(const validate::Prepared& p, std::span<const uint32_t> texe
 }
 
 BundleTrace bundle_trace(const validate::Prepared& p, uint32_t samples) {
-  BundleTrace out{p, samples, scene::world_bounds(p.scene).diagonal()};
+  BundleTrace out{p, samples};
   out.triangles = triangle_groups(p.scene);
   gather::RayBatch batch;
   for (uint32_t set = 0; set < kSets; ++set) {
@@ -142,7 +137,7 @@ void trace_as_gather(const BundleTrace& in, std::span<const uint32_t> elements,
     gather::RayBatch batch;
     std::vector<trace::Hit> hits(in.samples);
     for (const uint32_t i : elements.subspan(begin, end - begin)) {
-      gather::fill_rays(origin_of(in, i), e.normal[i], e.geometric_normal[i],
+      gather::fill_rays(e.position[i], e.normal[i], e.geometric_normal[i],
                         gather::seed_of_rays(1, i), {0, in.samples}, batch);
       in.p.tracer->closest_hits(batch.rays, hits, packets);
     }

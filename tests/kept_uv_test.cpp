@@ -5,6 +5,7 @@
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/transport/irradiance_field.h"
@@ -53,8 +54,8 @@ Sides light_of(const pipeline::Bake& bake, const scene::Scene& scene, uint32_t i
       [&](const scene::Scene&, const scene::SurfacePoint& p) { return p.instance == instance; });
   std::vector<Vec3> position, normal;
   for (const scene::SurfacePoint& p : points) {
-    position.push_back(scene::world_position(scene, p));
     normal.push_back(scene::front_normal(scene, p.instance, p.triangle) * side);
+    position.push_back(scene::off_surface(scene, p, normal.back()));
   }
   const auto before = trace::RayTracer::build(scene), after = trace::RayTracer::build(bake.scene);
   const auto paths = reference::irradiance_by_paths(scene, {position, normal, normal}, *before,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "luxel/base/warp.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/trace/camera_rays.h"
 
@@ -17,10 +18,9 @@ constexpr size_t kMostLights = 256;
 constexpr int kSkyRays = 8;
 
 /// side_seen_by(), its point a little above the surface: rays start there.
-SeenSide start_above(const scene::Scene& scene, const trace::Ray& ray, const trace::Hit& hit,
-                     float diagonal_m) {
+SeenSide start_above(const scene::Scene& scene, const trace::Ray& ray, const trace::Hit& hit) {
   SeenSide side = side_seen_by(scene, ray, hit);
-  side.at = trace::offset_origin(side.at, side.normal, diagonal_m);
+  side.at = scene::off_surface(scene, hit.point(), side.normal);
   return side;
 }
 
@@ -77,8 +77,8 @@ SeenSide side_seen_by(const scene::Scene& scene, const trace::Ray& ray, const tr
 
 Glimpse glimpse_of(const scene::Scene& scene) {
   Glimpse out;
-  out.diagonal_m = scene::world_bounds(scene).diagonal();
-  for (const scene::PunctualLight* light : some_lights(scene.lights, out.diagonal_m)) {
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  for (const scene::PunctualLight* light : some_lights(scene.lights, diagonal_m)) {
     const bool is_sun = light->kind == scene::PunctualLight::Kind::directional;
     out.sources.push_back({is_sun ? -light->direction : light->position, is_sun, {}});
   }
@@ -98,7 +98,7 @@ std::vector<uint8_t> lit_by_sources(const scene::Scene& scene, const trace::RayT
   std::vector<size_t> of;  // a hit
   for (size_t i = 0; i < hits.size(); ++i) {
     if (!hits[i].found()) continue;
-    const SeenSide seen = start_above(scene, rays[i], hits[i], glimpse.diagonal_m);
+    const SeenSide seen = start_above(scene, rays[i], hits[i]);
     for (const Glimpse::Source& source : glimpse.sources) {
       const trace::Ray ray = towards(source, seen.at);
       if (!(dot(ray.direction, seen.normal) > 0)) continue;
@@ -119,7 +119,7 @@ std::vector<uint8_t> lit_by_surroundings(const scene::Scene& scene, const trace:
   std::vector<size_t> of;
   for (size_t i = 0; i < hits.size(); ++i) {
     if (!hits[i].found()) continue;
-    const SeenSide seen = start_above(scene, rays[i], hits[i], glimpse.diagonal_m);
+    const SeenSide seen = start_above(scene, rays[i], hits[i]);
     for (int k = 0; k < kSkyRays; ++k) {
       // Each hit has another turn of the same directions: many hits look everywhere.
       const Vec2 u{(float(k) + 0.5f) / kSkyRays,

@@ -25,7 +25,6 @@ struct Glimpse {
   };
   std::vector<Source> sources;
   bool has_surroundings = false;
-  float diagonal_m = 0;  ///< of the scene
 };
 Glimpse glimpse_of(const scene::Scene& scene);
 

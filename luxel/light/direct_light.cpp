@@ -205,10 +205,8 @@ void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> whi
   kept.keep(part, out.bytes);
 }
 
-Receiver receiver_of(const transport::Elements& elements, size_t i, const DirectParams& params,
-                     float diagonal_m) {
+Receiver receiver_of(const transport::Elements& elements, size_t i, const DirectParams& params) {
   return {elements.position[i], elements.normal[i], elements.geometric_normal[i],
-          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           seed_of_element(params, i)};
 }
 
@@ -235,7 +233,6 @@ Status light_again_on_device(const LitElements& in, std::span<const uint32_t> wh
   constexpr size_t kAtATime = size_t(1) << 18;  // 20 MB, and 18 MB for the device
   static_assert(kAtATime % kPartElements == 0);
   const KeptStage kept = kept_stage(params, which);
-  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
   std::vector<Receiver> receivers;
   std::vector<LightAt> light;
   progress.begin("direct light", which.size());
@@ -244,7 +241,7 @@ Status light_again_on_device(const LitElements& in, std::span<const uint32_t> wh
     receivers.resize(these.size()), light.resize(these.size());
     parallel_for(these.size(), 4096, [&](size_t begin, size_t end) {
       for (size_t k = begin; k < end; ++k)
-        receivers[k] = receiver_of(in.elements, these[k], params, diagonal_m);
+        receivers[k] = receiver_of(in.elements, these[k], params);
     });
     LUXEL_TRY(const uint64_t rays,
               in.device->light_at(receivers, {.samples = params.samples}, light, progress));
@@ -276,7 +273,7 @@ uint64_t LookAgain::look(std::span<const uint32_t> these) const {
   ShadowRayBatch batch;
   uint64_t traced = 0;
   for (const uint32_t i : these) {
-    const Receiver receiver = receiver_of(in.elements, i, params, lit.diagonal_m);
+    const Receiver receiver = receiver_of(in.elements, i, params);
     set_light(i, direct_light_at(lit, params, receiver, batch), direct);
     if (params.layers) {
       const std::span<Rgb> own = direct.layers_of(i, *params.layers);
@@ -297,8 +294,7 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
               (params.layers ? params.layers->size() : 0) * in.elements.size());
   if (in.device && !params.layers && params.sky_samples == 0)
     return light_again_on_device(in, which, params, direct, progress);
-  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
-  const LookAgain again{in, params, {in.scene, in.lights, in.tracer, diagonal_m}, direct};
+  const LookAgain again{in, params, {in.scene, in.lights, in.tracer}, direct};
   const KeptStage kept = kept_stage(params, which);
   const auto elements_of = [&](size_t part) {
     const size_t begin = part * kPartElements;

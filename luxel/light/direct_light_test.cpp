@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/procedural.h"
 #include "tests/reference_data.h"
 
@@ -12,7 +13,7 @@ namespace shared = luxel::testing_support;
 
 transport::Elements element_at(Vec3 position, Vec3 normal) {
   transport::Elements e;
-  e.position = {position}, e.normal = e.geometric_normal = {normal},
+  e.position = {scene::off_surface(position, normal, 1)}, e.normal = e.geometric_normal = {normal},
   e.reflectance = {{0.5f, 0.5f, 0.5f}};
   return e;
 }

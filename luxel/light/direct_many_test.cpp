@@ -5,6 +5,7 @@
 
 #include "luxel/base/vec_double.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 
 namespace luxel::light {
@@ -47,7 +48,7 @@ Squares squares() {
 /// One point many times: every element has a seed of its own.
 transport::Elements copies(Vec3 position, Vec3 normal, size_t count) {
   transport::Elements e;
-  e.position.assign(count, position);
+  e.position.assign(count, scene::off_surface(position, normal, 1));
   e.normal.assign(count, normal), e.geometric_normal.assign(count, normal);
   e.reflectance.assign(count, {0.5f, 0.5f, 0.5f});
   return e;

@@ -6,6 +6,7 @@
 #include "luxel/light/light_draw.h"
 #include "luxel/light/shadow_rays.h"
 #include "luxel/light/spherical_triangle.h"
+#include "luxel/scene/off_surface.h"
 
 namespace luxel::light {
 namespace {
@@ -27,11 +28,11 @@ void aim_at_point(const DirectScene& lit, const TriangleLight& light, const Ligh
   // touches the light when the point lies on their common edge.
   constexpr float kEnd = 1 - 1e-4f;
   const Vec3 end =
-      trace::offset_origin(point.target, front ? light.normal : -light.normal, lit.diagonal_m);
+      scene::off_surface(point.target, front ? light.normal : -light.normal, light.size_m);
   const Rgb radiance = light.textured ? radiance_at(lit.scene, light, {point.at.x, point.at.y})
                                       : light.mean_radiance;
   const float w = point.weight * factor;
-  add_shadow_ray(batch, r, {source, w, radiance * w}, end - r.origin, kEnd);
+  add_shadow_ray(batch, r, {source, w, radiance * w}, end - r.position, kEnd);
 }
 
 /// Shadow rays at one triangle. Points below the receiver's horizon bring nothing and would starve

@@ -216,18 +216,16 @@ Result<BentLight> bent_irradiance(const LitScene& lit, std::span<const Vec3> pos
   /// E of the four tilted normals, and of the normal itself by the same rays: V is taken from
   /// differences, and noise that all five share does not show in them.
   std::vector<std::array<Rgb, 5>> light(n);
-  const float diagonal_m = scene::world_bounds(lit.scene).diagonal();
   progress.begin("directions", n);
   parallel_for(n, 256, [&](size_t begin, size_t end) {
     Arrivals a;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       const Frame frame = frame_around(normals[i]), above = frame_around(geometric_normals[i]);
-      const Vec3 from = trace::offset_origin(positions[i], geometric_normals[i], diagonal_m);
       a.rays.clear();
       for (uint32_t k = 0; k < uint32_t(params.samples); ++k) {
         Vec3 d = uniform_sphere_sample(sobol_owen_2d(k, hash64(params.seed, i)));
         d.z = std::abs(d.z);
-        a.rays.push_back({from, 0, above.to_world(d), INFINITY});
+        a.rays.push_back({positions[i], 0, above.to_world(d), INFINITY});
       }
       look_around(lit, a);
       const std::array<Vec3, 4> around = tilted(frame, normals[i]);

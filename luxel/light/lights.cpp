@@ -6,6 +6,7 @@
 #include "luxel/light/both_punctual_light.h"
 #include "luxel/light/punctual_tree.h"
 #include "luxel/light/textured_lights.h"
+#include "luxel/scene/facet.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::light {
@@ -16,13 +17,15 @@ constexpr size_t kMaxPieces = 16384, kMaxPiecesOfOne = 256;
 
 TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
   TriangleLight light;
-  const scene::Triangle3 t = scene::world_triangle(scene, instance, triangle);
+  const scene::Facet facet = scene::facet_of(scene, instance, triangle);
+  const scene::Triangle3& t = facet.corners;
   light.flipped = determinant(scene.instances[instance].world_from_object) < 0;
   light.a = t.a;
   light.b = light.flipped ? t.c : t.b;
   light.c = light.flipped ? t.b : t.c;
-  light.normal = scene::front_normal(scene, instance, triangle);
+  light.normal = facet.front;
   light.area_m2 = scene::area_m2(t);
+  light.size_m = facet.size_m;
   light.instance = instance, light.triangle = triangle;
   const scene::Material& material = scene::material_at(scene, {instance, triangle, {}});
   light.textured =

@@ -21,6 +21,7 @@ struct TriangleLight {
   Vec3 a, b, c;  ///< counter-clockwise seen from the front, in the world
   Vec3 normal;   ///< unit, front side
   float area_m2 = 0;
+  float size_m = 0;   ///< of its triangle, scene::size_for_rounding()
   Rgb mean_radiance;  ///< over the triangle, for choosing; never zero for a light that shines
   uint32_t instance = 0, triangle = 0;
   bool flipped =

@@ -20,7 +20,7 @@ void receive_at_points(const PointScene& place, uint64_t seed, size_t i, PointBu
   work.receivers.clear();
   for (const scene::SurfacePoint& p : work.spread) {
     const uint64_t own = hash64(hash64(seed, kPointSeed + work.receivers.size()), i);
-    work.receivers.push_back(receiver_at(place, transport::smooth_point(place.scene, p), own));
+    work.receivers.push_back(receiver_at(transport::smooth_point(place.scene, p), own));
   }
 }
 
@@ -98,7 +98,7 @@ Result<uint64_t> light_many_points(const TexelScene& in, size_t count, size_t mo
     }
     return rays;
   }
-  const DirectScene lit{in.scene, in.lights, in.tracer, point_scene(in).diagonal_m};
+  const DirectScene lit{in.scene, in.lights, in.tracer};
   std::atomic<uint64_t> rays{0};
   parallel_for(count, kSupersampleGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;

@@ -28,12 +28,10 @@ Rgb radiance_of(const PointCheck& check, const trace::Ray& ray, const trace::Hit
 }
 
 /// E by rays [W/m^2].
-Rgb by_rays(const PointCheck& check, const transport::Elements& points, size_t i, uint64_t seed,
-            float diagonal_m) {
+Rgb by_rays(const PointCheck& check, const transport::Elements& points, size_t i, uint64_t seed) {
   std::array<trace::Ray, kRays> rays;
   std::array<trace::Hit, kRays> hits;
-  const Vec3 from =
-      trace::offset_origin(points.position[i], points.geometric_normal[i], diagonal_m);
+  const Vec3 from = points.position[i];
   const Frame frame = frame_around(points.normal[i]);
   size_t count = 0;
   for (uint32_t k = 0; k < kRays; ++k) {
@@ -62,7 +60,6 @@ Result<double> point_error(const PointCheck& check, const transport::Elements& p
   LUXEL_CHECK(gathered.size() == points.size() && hidden.size() == points.size());
   const std::vector<uint32_t> chosen = points_to_check(points.size(), hidden);
   // The product of both differences at each.
-  const float diagonal_m = scene::world_bounds(check.scene).diagonal();
   std::vector<double> square(chosen.size());
   progress.begin("check", chosen.size());
   parallel_for(chosen.size(), 16, [&](size_t begin, size_t end) {
@@ -70,8 +67,7 @@ Result<double> point_error(const PointCheck& check, const transport::Elements& p
       const size_t i = chosen[k];
       const auto difference = [&](uint64_t answer) {
         return double(
-            luminance(gathered[i] -
-                      by_rays(check, points, i, hash64(check.seed, 2 * i + answer), diagonal_m)));
+            luminance(gathered[i] - by_rays(check, points, i, hash64(check.seed, 2 * i + answer))));
       };
       square[k] = difference(0) * difference(1);
       progress.advance(1);

@@ -25,7 +25,7 @@ Status visit_points(const TexelScene& in, std::span<const uint8_t> hidden, int c
     std::vector<Receiver> points;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       if (hidden[i]) continue;
-      const Receiver own = own_receiver(place, in.elements, i);
+      const Receiver own = own_receiver(in.elements, i);
       const bool near_backs = sees_backs(place, own);
       atlas::spread_points(in.atlas, in.map.texels[i], cover.of(i), count, seed, spread);
       find_on_side(in, i, spread, on_side);
@@ -33,8 +33,7 @@ Status visit_points(const TexelScene& in, std::span<const uint8_t> hidden, int c
       for (size_t k = 0; k < spread.size(); ++k) {
         if (!on_side[k]) continue;
         const uint64_t own_seed = hash64(hash64(seed, points.size()), i);
-        const Receiver r =
-            receiver_at(place, transport::smooth_point(in.scene, spread[k]), own_seed);
+        const Receiver r = receiver_at(transport::smooth_point(in.scene, spread[k]), own_seed);
         if (!near_backs || !is_enclosed(place, r)) points.push_back(r);
       }
       if (points.empty()) points.push_back(own);

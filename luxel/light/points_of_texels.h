@@ -21,27 +21,22 @@ inline constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
 struct PointScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
-  float diagonal_m;
 };
 
-inline PointScene point_scene(const TexelScene& in) {
-  return {in.scene, in.tracer, scene::world_bounds(in.scene).diagonal()};
-}
+inline PointScene point_scene(const TexelScene& in) { return {in.scene, in.tracer}; }
 
 /// Whether a point lies inside a solid; of each place the same answer in every bake.
 inline bool is_enclosed(const PointScene& at, const Receiver& r, int rays = kEnclosureRays) {
-  return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
+  return transport::is_enclosed(at.scene, at.tracer, r.position, r.normal, rays);
 }
 
-inline Receiver receiver_at(const PointScene& at, const transport::SmoothPoint& s, uint64_t seed) {
-  return {s.position, s.normal, s.geometric_normal,
-          trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
+inline Receiver receiver_at(const transport::SmoothPoint& s, uint64_t seed) {
+  return {s.start, s.normal, s.geometric_normal, seed};
 }
 
 /// The sample of a texel, without a seed: enough to be asked whether it is enclosed.
-inline Receiver own_receiver(const PointScene& at, const transport::Elements& elements, size_t i) {
-  return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
-                     0);
+inline Receiver own_receiver(const transport::Elements& elements, size_t i) {
+  return {elements.position[i], elements.normal[i], elements.geometric_normal[i]};
 }
 
 /// Which points of a texel's footprint lie on its sample's side of walls. Returns the number of
@@ -56,7 +51,7 @@ inline uint64_t find_on_side(const TexelScene& in, size_t texel,
 
 /// Whether the sample of a texel has the backs of some surfaces before it.
 inline bool sees_backs(const PointScene& at, const Receiver& own) {
-  return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.origin,
+  return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.position,
                                                           own.normal, kEnclosureRays)) > 0;
 }
 

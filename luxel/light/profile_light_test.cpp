@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/light/direct_light.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 
 namespace luxel::light {
@@ -35,7 +36,8 @@ Rgb floor_light(const scene::Scene& scene, float x, float z) {
   const auto tracer = trace::RayTracer::build(scene);
   EXPECT_TRUE(tracer);
   transport::Elements at;
-  at.position = {{x, 0, z}}, at.normal = at.geometric_normal = {{0, 1, 0}}, at.reflectance = {{}};
+  at.position = {scene::off_surface({x, 0, z}, {0, 1, 0}, 1)},
+  at.normal = at.geometric_normal = {{0, 1, 0}}, at.reflectance = {{}};
   Progress progress;
   const auto light = direct_light(scene, at, collect_lights(scene), *tracer, {1, 1}, progress);
   EXPECT_TRUE(light);

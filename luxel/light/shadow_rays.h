@@ -25,12 +25,10 @@ struct DirectScene {
   const scene::Scene& scene;
   const Lights& lights;
   const trace::RayTracer& tracer;
-  float diagonal_m = 0;  ///< of the scene: rays start a share of it off the surface
 };
 
 struct Receiver {
-  Vec3 position, normal, geometric_normal;
-  Vec3 origin;  ///< position moved off the surface: where shadow rays start
+  Vec3 position, normal, geometric_normal;  ///< as in transport::Elements
   uint64_t seed = 0;
 };
 
@@ -99,7 +97,7 @@ inline void add_shadow_ray(ShadowRayBatch& batch, const Receiver& at, ShadowRay 
   ++source.rays;
   if (dot(direction, at.geometric_normal) <= 0) return;
   batch.shadow_rays.push_back(ray);
-  batch.rays.push_back({at.origin, 0, direction, t_max});
+  batch.rays.push_back({at.position, 0, direction, t_max});
 }
 
 /// Each adds what it aims at of one kind, about `samples` shadow rays for it.

@@ -29,13 +29,13 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
     // Points of each texel on its sample's side of walls that lie in the open; its own sample where
     // there are none.
     for (size_t i = begin; i < end; ++i) {
-      const Receiver own = own_receiver(place, in.elements, i);
+      const Receiver own = own_receiver(in.elements, i);
       if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
         atlas::spread_points(in.atlas, in.map.texels[i], cover.of(i), points, seed, spread);
         find_on_side(in, i, spread, on_side);
         for (size_t k = 0; k < spread.size(); ++k) {
           if (!on_side[k]) continue;
-          const Receiver r = receiver_at(place, transport::smooth_point(in.scene, spread[k]), 0);
+          const Receiver r = receiver_at(transport::smooth_point(in.scene, spread[k]), 0);
           if (!is_enclosed(place, r)) found[i].push_back(r);
         }
       }
@@ -182,7 +182,7 @@ struct Averaging {
 /// WorkOnPoints::begin(): points all over the texel's footprint.
 uint64_t Averaging::begin(size_t k, PointBuffers& work) {
   const uint32_t i = which[k];
-  const Receiver own = own_receiver(place, in.elements, i);
+  const Receiver own = own_receiver(in.elements, i);
   uint64_t rays = 0;
   // A texel whose own sample lies inside a solid is hidden, and keeps its light.
   if (is_dark(direct.irradiance[i])) {
@@ -264,7 +264,7 @@ uint64_t average_part(Averaging& averaging, const DirectScene& lit, size_t numbe
 Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
   const TexelScene& in = averaging.in;
   DirectLight& direct = averaging.direct;
-  const DirectScene lit{in.scene, in.lights, in.tracer, averaging.place.diagonal_m};
+  const DirectScene lit{in.scene, in.lights, in.tracer};
   const KeptStage kept = kept_stage(averaging.params, averaging.which, direct);
   Team* team = averaging.params.direct.team;
   const size_t parts = (averaging.which.size() + kSupersampleGrain - 1) / kSupersampleGrain;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/light/direct_light.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/viewfactor/rectangle_factor.h"
 
@@ -47,8 +48,8 @@ double exact_at(const Spot& spot, Vec3 p) {
 transport::Elements floor_points() {
   transport::Elements e;
   for (int i = 0; i < 25; ++i) {
-    e.position.push_back({0.4f * float(i % 5) - 0.7f, 0, 0.4f * float(i / 5) - 0.9f});
-    e.normal.push_back({0, 1, 0});
+    const Vec3 place{0.4f * float(i % 5) - 0.7f, 0, 0.4f * float(i / 5) - 0.9f};
+    e.normal.push_back({0, 1, 0}), e.position.push_back(scene::off_surface(place, {0, 1, 0}, 1));
   }
   e.geometric_normal = e.normal, e.reflectance.resize(e.size());
   return e;

@@ -134,7 +134,7 @@ struct FleckScene {
 
   /// The sample of a texel.
   Receiver sample_of(uint32_t texel) const {
-    Receiver out = own_receiver(place, in.elements, texel);
+    Receiver out = own_receiver(in.elements, texel);
     out.seed = hash64(params.direct.seed, texel);
     return out;
   }
@@ -231,13 +231,12 @@ std::vector<uint32_t> facing_punctual_lights(const TexelScene& in, std::span<con
   if (in.lights.punctual.empty()) return {};
   std::vector<uint32_t> out;
   std::ranges::set_difference(among, known, std::back_inserter(out));
-  const PointScene place = point_scene(in);
   std::vector<uint8_t> faces(out.size());
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     ShadowRayBatch aimed;
     for (size_t k = begin; k < end; ++k) {
       clear(aimed);
-      aim_at_punctual_lights(in.lights, 1, own_receiver(place, in.elements, out[k]), aimed);
+      aim_at_punctual_lights(in.lights, 1, own_receiver(in.elements, out[k]), aimed);
       faces[k] = !aimed.rays.empty();
     }
   });

@@ -36,7 +36,7 @@ Result<std::vector<float>> visible_share(const TexelScene& in, std::span<const u
                                          const scene::PunctualLight& light,
                                          const VisibilityParams& params, Progress& progress) {
   const Lights lone = lone_light(light);
-  const DirectScene lit{in.scene, lone, in.tracer, scene::world_bounds(in.scene).diagonal()};
+  const DirectScene lit{in.scene, lone, in.tracer};
   std::vector<float> share(in.map.texels.size());
   LUXEL_TRY_STATUS(visit_points(
       in, hidden, params.points, hash64(params.seed, kMaskSeed), "shadow mask",
@@ -66,7 +66,7 @@ Result<std::vector<float>> open_share(const TexelScene& in, std::span<const uint
           const Receiver& r = points[size_t(k) % points.size()];
           const Vec2 u = sobol_owen_2d(uint32_t(k), seed);
           const Vec3 d = frame_around(r.normal).to_world(cosine_hemisphere_sample(u));
-          rays.push_back({r.origin, 0, mirrored_above(d, r.geometric_normal), params.distance_m});
+          rays.push_back({r.position, 0, mirrored_above(d, r.geometric_normal), params.distance_m});
         }
         blocked.resize(rays.size());
         in.tracer.occluded(rays, blocked);

@@ -99,7 +99,7 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
         const size_t k = point_of(receivers, i, s);
         const Receiver at{receivers.position[k], receivers.normal[k],
                           receivers.geometric_normal[k]};
-        paths.push_back(path_from(world, at, {path_seed(params.seed, i, s)}));
+        paths.push_back(path_from(at, {path_seed(params.seed, i, s)}));
         if (params.is_one_place)
           paths.back().cells = {{uint32_t(s * count + i), uint32_t(count * size_t(params.samples))},
                                 params.seed};

@@ -30,7 +30,7 @@ trace::Ray random_ray(Path& path) {
   const DVec2 u = point_in(next_cell(path.cells), path.random.next2());
   const Vec3 local = cosine_hemisphere_sample({float(u.x), float(u.y)});
   const Vec3 d = frame_around(path.at.normal).to_world(local);
-  return {path.origin, 0, light::mirrored_above(d, path.at.geometric_normal), INFINITY};
+  return {path.at.position, 0, light::mirrored_above(d, path.at.geometric_normal), INFINITY};
 }
 
 EmitterPoint pick_point(const Emitters& emitters, Path& path) {
@@ -45,7 +45,7 @@ EmitterPoint pick_point(const Emitters& emitters, Path& path) {
 void aim_at_emitter(const TracedScene& world, Path& path, uint32_t index, PathBuffers& work) {
   const EmitterPoint point = pick_point(world.emitters, path);
   const Emitter& e = *point.emitter;
-  const Vec3 to_light = point.position - path.origin;
+  const Vec3 to_light = point.position - path.at.position;
   const float d2 = dot(to_light, to_light);
   if (!(d2 > 0)) return;
   const Vec3 d = to_light / std::sqrt(d2);
@@ -60,7 +60,7 @@ void aim_at_emitter(const TracedScene& world, Path& path, uint32_t index, PathBu
   const float weight = mis_weight(pdf, folded_cosine(path.at, d) / kPi);
   work.emitter_rays.push_back(
       {index, point, path.throughput * (coverage * cosine / kPi * weight / pdf)});
-  work.rays.push_back({path.origin, 0, to_light, kBeyond});
+  work.rays.push_back({path.at.position, 0, to_light, kBeyond});
 }
 
 void aim_at_punctual_light(const TracedScene& world, Path& path, uint32_t index,
@@ -73,7 +73,7 @@ void aim_at_punctual_light(const TracedScene& world, Path& path, uint32_t index,
   work.along_shadow_rays.push_back({index, path.throughput * punctual.irradiance * (cosine / kPi)});
   const float t_max =
       std::isfinite(punctual.distance_m) ? punctual.distance_m * kArrived : INFINITY;
-  work.shadow_rays.push_back({path.origin, 0, punctual.towards, t_max});
+  work.shadow_rays.push_back({path.at.position, 0, punctual.towards, t_max});
 }
 
 /// One direction of the environment, weighted against the chance that random_ray finds it.
@@ -85,7 +85,7 @@ void aim_at_sky(const TracedScene& world, Path& path, uint32_t index, PathBuffer
   const Rgb light = scene::radiance_towards(world.scene.environment, sky.direction);
   work.along_shadow_rays.push_back(
       {index, path.throughput * light * (cosine / kPi * weight / sky.pdf)});
-  work.shadow_rays.push_back({path.origin, 0, sky.direction, INFINITY});
+  work.shadow_rays.push_back({path.at.position, 0, sky.direction, INFINITY});
 }
 
 /// What a random ray sees that has left the scene.
@@ -188,7 +188,6 @@ bool advance(const TracedScene& world, const trace::Ray& ray, const trace::Hit& 
   const trace::Hit side = send_on(world, hit, path);
   if (!survives(path, depth + 1)) return false;
   path.at = receiver_at(world.scene, world.surfaces, side);
-  path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
   return true;
 }
 
@@ -197,12 +196,7 @@ bool advance(const TracedScene& world, const trace::Ray& ray, const trace::Hit& 
 TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& tracer) {
   Surfaces surfaces = surfaces_of(scene);
   Emitters emitters = collect_emitters(scene, surfaces);
-  return {scene,
-          tracer,
-          std::move(surfaces),
-          std::move(emitters),
-          sky_sampler(scene.environment),
-          scene::world_bounds(scene).diagonal()};
+  return {scene, tracer, std::move(surfaces), std::move(emitters), sky_sampler(scene.environment)};
 }
 
 namespace {
@@ -245,10 +239,9 @@ DVec2 point_in(Cell cell, Vec2 u) {
           (double(cell.number - first) + double(u.y)) / in_column};
 }
 
-Path path_from(const TracedScene& world, const Receiver& at, RandomStream random) {
+Path path_from(const Receiver& at, RandomStream random) {
   Path path;
   path.at = at;
-  path.origin = trace::offset_origin(at.position, at.geometric_normal, world.diagonal_m);
   path.random = random;
   return path;
 }
@@ -271,7 +264,6 @@ Path path_from_eye(const TracedScene& world, Vec3 direction, const trace::Hit& h
     return path;
   }
   path.at = receiver_at(world.scene, world.surfaces, send_on(world, hit, path));
-  path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
   path.value = scene::emission_at(world.scene, hit.point());
   path.shows_surface = true;
   return path;

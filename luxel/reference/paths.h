@@ -20,7 +20,6 @@ struct TracedScene {
   Surfaces surfaces;
   Emitters emitters;
   SkySampler sky;
-  float diagonal_m = 0;
 };
 TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& tracer);
 
@@ -46,7 +45,6 @@ DVec2 point_in(Cell cell, Vec2 u);
 /// started at a receiver with throughput 1.
 struct Path {
   Receiver at;
-  Vec3 origin;              ///< at.position moved off the surface: where rays start
   Rgb throughput{1, 1, 1};  ///< product of reflectances, over the chances to survive
   Rgb value{};
   RandomStream random;
@@ -54,7 +52,7 @@ struct Path {
   FirstHit first_hit = FirstHit::other;  ///< what its first ray met
   bool shows_surface = false;            ///< of paths from the eye
 };
-Path path_from(const TracedScene& world, const Receiver& at, RandomStream random);
+Path path_from(const Receiver& at, RandomStream random);
 /// A path from a camera's ray: its value is radiance, L + rho E / pi of the surface that the ray
 /// met, or that of the surroundings.
 Path path_from_eye(const TracedScene& world, Vec3 direction, const trace::Hit& hit,

@@ -9,6 +9,7 @@
 
 #include "luxel/base/vec_double.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/viewfactor/rectangle_factor.h"
@@ -17,9 +18,10 @@ namespace luxel::reference::testing {
 
 constexpr Rgb gray(float v) { return {v, v, v}; }
 
+/// Places of surfaces of about a metre, where rays start.
 struct Points {
   std::vector<Vec3> position, normal;
-  void add(Vec3 p, Vec3 n) { position.push_back(p), normal.push_back(n); }
+  void add(Vec3 p, Vec3 n) { position.push_back(scene::off_surface(p, n, 1)), normal.push_back(n); }
   size_t size() const { return position.size(); }
 };
 

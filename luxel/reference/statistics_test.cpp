@@ -7,6 +7,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/reference/paths.h"
 #include "luxel/reference/reference_test_support.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/procedural.h"
 
 namespace luxel::reference {
@@ -177,7 +178,7 @@ struct Estimate {
 };
 Estimate estimate(const TracedScene& world, const Receiver& at, int count) {
   std::vector<Path> paths;
-  for (int k = 0; k < count; ++k) paths.push_back(path_from(world, at, {hash64(7, uint64_t(k))}));
+  for (int k = 0; k < count; ++k) paths.push_back(path_from(at, {hash64(7, uint64_t(k))}));
   PathBuffers work;
   follow(world, -1, paths, work);
   double sum = 0, sum2 = 0;
@@ -198,7 +199,8 @@ TEST(Statistics, PickingEmittersOrMeetingThemByChanceGivesTheSame) {
       room.upper.y - 0.1f, false, 1);
   const auto tracer = trace::RayTracer::build(scene);
   const Vec3 n{0, 1, 0};
-  const Receiver at{Vec3{room.centre().x, room.lower.y, room.centre().z}, n, n};
+  const Vec3 middle{room.centre().x, room.lower.y, room.centre().z};
+  const Receiver at{scene::off_surface(middle, n, 1), n, n};
   TracedScene world = traced_scene(scene, *tracer);
   ASSERT_EQ(world.emitters.triangles.size(), 2u);
   const Estimate both = estimate(world, at, 100000);

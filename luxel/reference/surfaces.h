@@ -9,7 +9,8 @@
 
 namespace luxel::reference {
 
-/// Where light is gathered: a point of one side of a surface. Directions are those of that side.
+/// Where light is gathered: beside one side of a surface, off it by what rounding may do.
+/// Directions are those of that side.
 struct Receiver {
   Vec3 position, normal, geometric_normal;
 };
@@ -18,6 +19,7 @@ struct Receiver {
 struct Surfaces {
   std::vector<uint32_t> first_triangle;
   std::vector<Vec3> front;      ///< unit normal of the front side, in the world
+  std::vector<float> size_m;    ///< scene::size_for_rounding()
   std::vector<uint8_t> curved;  ///< 1 where vertex normals differ from `front`
 
   uint32_t number(uint32_t instance, uint32_t triangle) const {

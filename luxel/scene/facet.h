@@ -9,6 +9,7 @@ namespace luxel::scene {
 struct Facet {
   Triangle3 corners;  ///< world_triangle()
   Vec3 front;         ///< front_normal()
+  float size_m = 0;   ///< size_for_rounding(): luxel/scene/off_surface.h
 };
 Facet facet_of(const Scene& scene, uint32_t instance, uint32_t triangle);
 

@@ -3,6 +3,7 @@
 #include "luxel/base/check.h"
 #include "luxel/image/color.h"
 #include "luxel/scene/facet.h"
+#include "luxel/scene/off_surface.h"
 
 namespace luxel::scene {
 namespace {
@@ -104,9 +105,10 @@ Triangle3 world_triangle(const Scene& scene, uint32_t instance, uint32_t triangl
 
 Facet facet_of(const Scene& scene, uint32_t instance, uint32_t triangle) {
   const Triangle3 t = world_triangle(scene, instance, triangle);
-  const bool mirrored = determinant(scene.instances[instance].world_from_object) < 0;
+  const Mat34& stands = scene.instances[instance].world_from_object;
   const Vec3 n = normalize(geometric_normal_area2(t));
-  return {t, mirrored ? -n : n};
+  const Vec3 extent = max(max(t.a, t.b), t.c) - min(min(t.a, t.b), t.c);
+  return {t, determinant(stands) < 0 ? -n : n, size_for_rounding(stands, extent, n)};
 }
 
 Vec3 front_normal(const Scene& scene, uint32_t instance, uint32_t triangle) {

@@ -115,11 +115,4 @@ class RayTracer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// How far rounding may put a point off its surface [m]: a few float steps of its own magnitude and
-/// of the scene's size.
-float rounding_m(Vec3 position, float scene_diagonal_m);
-/// A ray's start just off a surface: the point moved along `normal` (the side the ray leaves from)
-/// by rounding_m(), so that it does not lie behind the surface.
-Vec3 offset_origin(Vec3 position, Vec3 normal, float scene_diagonal_m);
-
 }  // namespace luxel::trace

@@ -6,6 +6,7 @@
 
 #include "luxel/base/random.h"
 #include "luxel/base/vec_double.h"
+#include "luxel/scene/facet.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/sides.h"
 #include "luxel/trace/surface_starts_test_support.h"
@@ -131,34 +132,6 @@ TEST(RayTracer, NothingSlipsThroughAClosedSurface) {
   }
 }
 
-// From every corner region of a box, a start just off a wall must not see that wall.
-TEST(OffsetOrigin, LeavesTheSurfaceAtAnyScale) {
-  for (const float scale : {1e-2f, 1.0f, 1e3f}) {
-    scene::Scene scene = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
-    for (scene::Instance& i : scene.instances)
-      i.world_from_object = translation({7 * scale, -3 * scale, scale}) *
-                            scaling({scale, scale, scale}) * i.world_from_object;
-    const auto tracer = RayTracer::build(scene);
-    const float diagonal = scene::world_bounds(scene).diagonal();
-    RandomStream random{5};
-    for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
-      for (uint32_t t = 0; t < scene.meshes[scene.instances[instance].mesh].triangles.size(); ++t)
-        for (int k = 0; k < 50; ++k) {
-          const Vec2 u = random.next2();
-          const scene::SurfacePoint p{instance, t, {u.x * (1 - u.y), u.y}};
-          const Vec3 n = scene::front_normal(scene, instance, t);
-          const Vec3 from = offset_origin(scene::world_position(scene, p), n, diagonal);
-          // Steeply along the wall: the hardest case.
-          const Frame f = frame_around(n);
-          const Hit hit =
-              tracer->closest_hit({from, 0, normalize(f.tangent + n * 0.02f), INFINITY});
-          ASSERT_TRUE(hit.found());
-          EXPECT_FALSE(hit.back_face);
-          EXPECT_FALSE(hit.instance == instance && hit.triangle == t);
-        }
-  }
-}
-
 // No ray meets the plane that it leaves: not its own triangle, not the other half of its quad, not
 // a coplanar copy of that with other triangles. Starts lie no further off it than they must.
 TEST(OffSurface, LeavesItsQuad) {
@@ -175,11 +148,11 @@ TEST(OffSurface, LeavesItsQuad) {
     const scene::Triangle3 t = scene::world_triangle(on.scene, 0, 0);
     const DVec3 a = to_double(t.a);
     const DVec3 n = normalize(cross(to_double(t.b) - a, to_double(t.c) - a));
-    const float size_m = scene::size_for_rounding(on.scene, 0, 0);
+    const float size_m = scene::facet_of(on.scene, 0, 0).size_m;
     for (const Ray& ray : rays) {
       const double height = dot(to_double(ray.origin) - a, n);
       const double most =
-          0x1p-19 * double(std::max(max_component(max(ray.origin, -ray.origin)), size_m));
+          0x1p-20 * double(std::max(max_component(max(ray.origin, -ray.origin)), size_m));
       EXPECT_GT(height, 0) << on.name;
       EXPECT_LT(height, most) << on.name;
     }

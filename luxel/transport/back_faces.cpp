@@ -7,6 +7,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/off_surface.h"
 
 namespace luxel::transport {
 
@@ -80,7 +81,7 @@ bool sees_backs_alone(const scene::Scene& scene, const trace::RayTracer& tracer,
 /// but backs counts as a back: the floor within a box whose own bottom lies just as high, so that
 /// rays meet either. `look`: from there, with some of the rays.
 bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
-                float diagonal_m, Look& look) {
+                Look& look) {
   look_further(tracer, from, normal, kMost, look);
   BackFaces seen = backs_of(scene, look);
   if (is_enclosed(seen)) return true;
@@ -93,8 +94,7 @@ bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 
   for (const trace::Hit& hit : look.hits) {
     if (hit.back_face) continue;
     const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-    const Vec3 at =
-        trace::offset_origin(scene::world_position(scene, hit.point()), front, diagonal_m);
+    const Vec3 at = scene::off_surface(scene, hit.point(), front);
     // One may be anything, as in is_enclosed.
     if (!sees_backs_alone(scene, tracer, at, front) && ++open > 1) return false;
   }
@@ -103,10 +103,10 @@ bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 
 
 /// Whether a place lies inside a solid, by the rays of `look`, and by all where those are not sure.
 bool is_enclosed_by(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
-                    Vec3 normal, float diagonal_m, Look& look) {
+                    Vec3 normal, Look& look) {
   const BackFaces seen = backs_of(scene, look);
-  return is_enclosed(seen) || (sees_nearly_backs_alone(seen) &&
-                               is_shut_in(scene, tracer, from, normal, diagonal_m, look));
+  return is_enclosed(seen) ||
+         (sees_nearly_backs_alone(seen) && is_shut_in(scene, tracer, from, normal, look));
 }
 
 }  // namespace
@@ -118,14 +118,14 @@ BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tr
 }
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
-                 int rays, float diagonal_m) {
+                 int rays) {
   LUXEL_CHECK(rays > 0 && size_t(rays) <= kMost);
   Look look = look_from(tracer, from, normal, size_t(rays));
-  return is_enclosed_by(scene, tracer, from, normal, diagonal_m, look);
+  return is_enclosed_by(scene, tracer, from, normal, look);
 }
 
 bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
-                    Vec3 normal, float diagonal_m) {
+                    Vec3 normal) {
   constexpr int kFewRays = 8, kRays = 32;
   Look look = look_from(tracer, from, normal, kFewRays);
   BackFaces seen = backs_of(scene, look);
@@ -139,27 +139,23 @@ bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, V
     const BackFaces most{kRays, seen.one_sided + left, seen.double_sided};
     if (!is_hidden(most) && !sees_nearly_backs_alone(most)) return true;
   }
-  return !is_enclosed_by(scene, tracer, from, normal, diagonal_m, look);
+  return !is_enclosed_by(scene, tracer, from, normal, look);
 }
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
-                 const Elements& elements, size_t i, const BackFaces& own, float diagonal_m) {
+                 const Elements& elements, size_t i, const BackFaces& own) {
   if (4 * own.one_sided < own.rays && !sees_nearly_backs_alone(own)) return false;
   if (4 * own.one_sided > 3 * own.rays) return true;
-  const Vec3 from =
-      trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
   Look look;
-  return is_shut_in(scene, tracer, from, elements.normal[i], diagonal_m, look);
+  return is_shut_in(scene, tracer, elements.position[i], elements.normal[i], look);
 }
 
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    const Elements& elements,
                                    const std::function<BackFaces(size_t)>& own) {
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<uint8_t> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      out[i] = is_enclosed(scene, tracer, elements, i, own(i), diagonal_m);
+    for (size_t i = begin; i < end; ++i) out[i] = is_enclosed(scene, tracer, elements, i, own(i));
   });
   return out;
 }
@@ -168,16 +164,14 @@ std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTr
                                    const Elements& elements) {
   // Most places see no backs: a few rays tell.
   constexpr int kFirst = 16;
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<uint8_t> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const Vec3 from =
-          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+      const Vec3 from = elements.position[i];
       Look look = look_from(tracer, from, elements.normal[i], kFirst);
       if (all_backs(backs_of(scene, look)) == 0) continue;
       look_further(tracer, from, elements.normal[i], kMost, look);
-      out[i] = is_enclosed_by(scene, tracer, from, elements.normal[i], diagonal_m, look);
+      out[i] = is_enclosed_by(scene, tracer, from, elements.normal[i], look);
     }
   });
   return out;

@@ -41,7 +41,7 @@ inline bool is_enclosed(const BackFaceShares& b) {
 }
 
 /// What 64 rays at most meet, cosine-distributed about `normal`, the same set for every place. They
-/// start at `from`, which lies just off the surface (trace::offset_origin).
+/// start at `from`, which lies just off the surface (scene::off_surface).
 BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                            Vec3 normal, int rays);
 
@@ -49,18 +49,18 @@ BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tr
 /// backs, but not all, 64 decide, for which a front that sees nothing but backs is as good as one,
 /// unless it shines: of the floor within a box whose bottom lies just as high rays meet either.
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
-                 int rays, float diagonal_m);
+                 int rays);
 
 /// Whether a place lies outside of solids, by 32 of those rays at most: most places see no backs,
 /// and most under things nothing else, and a few rays tell.
 bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
-                    Vec3 normal, float diagonal_m);
+                    Vec3 normal);
 
 /// Whether element i lies inside a solid. `own` is what its own rays met; where they are not sure,
 /// a fixed set decides, so that other samples or another seed do not turn a texel on and off, and
 /// solvers agree.
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
-                 const Elements& elements, size_t i, const BackFaces& own, float diagonal_m);
+                 const Elements& elements, size_t i, const BackFaces& own);
 /// Per element, 1 where it lies inside a solid, else 0. `own(i)` is what its own rays met.
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    const Elements& elements,

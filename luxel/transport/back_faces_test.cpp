@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 
 namespace luxel::transport {
@@ -36,15 +37,14 @@ struct Counts {
 Counts count_enclosed(const scene::Scene& scene, int rays) {
   const auto tracer = trace::RayTracer::build(scene);
   EXPECT_TRUE(tracer);
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   Counts out;
   for (int k = 0; k < 20; ++k)
     for (int j = 0; j < 20; ++j, ++out.each) {
       const float x = kHalf * (float(2 * k + 1) / 20 - 1), z = kHalf * (float(2 * j + 1) / 20 - 1);
       const auto is_enclosed_at = [&](float at_x) {
         const Vec3 down{0, -1, 0};
-        const Vec3 from = trace::offset_origin({at_x, kHeight, z}, down, diagonal_m);
-        return is_enclosed(scene, *tracer, from, down, rays, diagonal_m);
+        const Vec3 from = scene::off_surface({at_x, kHeight, z}, down, 1);
+        return is_enclosed(scene, *tracer, from, down, rays);
       };
       out.inside += is_enclosed_at(x), out.outside += is_enclosed_at(x + 3 * kHalf);
     }

@@ -7,6 +7,7 @@
 
 #include "luxel/base/share_out.h"
 #include "luxel/scene/facet.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/clear_runs.h"
 
@@ -49,7 +50,6 @@ struct Search {
   const atlas::Atlas& atlas;
   const atlas::TexelMap& map;
   const trace::RayTracer& tracer;
-  float diagonal_m;
   std::span<Openness> openness;  ///< per texel, as in_the_open() finds it
 
   uint32_t chart_of(uint32_t texel) const { return atlas.chart[map.texels[texel].triangle_number]; }
@@ -69,8 +69,7 @@ struct Search {
     if (const Openness k = known.load(std::memory_order_relaxed); k != Openness::not_asked)
       return k == Openness::open;
     const FlatPoint p = place(texel);
-    const Vec3 from = trace::offset_origin(p.position, p.normal, diagonal_m);
-    const bool open = !is_enclosed(scene, tracer, from, p.normal, kRaysForOpen, diagonal_m);
+    const bool open = !is_enclosed(scene, tracer, just_above(p), p.normal, kRaysForOpen);
     known.store(open ? Openness::open : Openness::enclosed, std::memory_order_relaxed);
     return open;
   }
@@ -85,8 +84,8 @@ struct Search {
   /// its triangle, at `height` steps. The texels' samples lie anywhere in them: a step between two
   /// may be three times that between their centres.
   bool has_clear_lines(TexelRun run, float height) const {
-    const scene::SurfacePoint& p = map.texels[run.first].sample;
-    const float rounding_m = trace::rounding_m(scene::world_position(scene, p), diagonal_m);
+    const FlatPoint p = place(run.first);
+    const float rounding_m = scene::rounding_m(p.position, p.size_m);
     return is_clear(scene, atlas, map, tracer, run, {-rounding_m, 3 * height, 0, false});
   }
 
@@ -225,8 +224,10 @@ std::vector<atlas::PartedPoints> Search::parted(uint32_t begin, uint32_t end,
 FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
   const scene::Facet facet = scene::facet_of(scene, p.instance, p.triangle);
   const scene::Triangle3& t = facet.corners;
-  return {interpolate(t.a, t.b, t.c, p.at), facet.front};
+  return {interpolate(t.a, t.b, t.c, p.at), facet.front, facet.size_m};
 }
+
+Vec3 just_above(const FlatPoint& p) { return scene::off_surface(p.position, p.normal, p.size_m); }
 
 bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t chart,
                 const trace::Hit& hit) {
@@ -265,7 +266,7 @@ Result<std::vector<atlas::PartedPoints>> find_parted(const scene::Scene& scene,
   constexpr size_t kBlock = 256;
   progress.begin("walls", 2 * map.texels.size());
   std::vector<Openness> openness(map.texels.size());
-  const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), openness};
+  const Search search{scene, atlas, map, tracer, openness};
   LUXEL_TRY(const std::vector<uint8_t> ways, search.open_ways(team, progress));
   return share_lists<atlas::PartedPoints>(
       team, ways.size(), kBlock, progress, [&](size_t begin, size_t end) {
@@ -298,7 +299,7 @@ Status for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                            Team* team) {
   constexpr size_t kBlock = 2048;
   progress.begin("walls", map.texels.size());
-  const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), {}};
+  const Search search{scene, atlas, map, tracer, {}};
   std::vector<uint8_t> ways(map.texels.size());
   const auto find = [&](size_t begin, size_t end) {
     search.find_forward_ways(

@@ -20,8 +20,11 @@ namespace luxel::transport {
 /// A place on the front of a surface.
 struct FlatPoint {
   Vec3 position, normal;  ///< world; the geometric normal
+  float size_m = 0;       ///< of its triangle, scene::size_for_rounding()
 };
 FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p);
+/// Where rays start there: off the surface by what rounding may do.
+Vec3 just_above(const FlatPoint& p);
 
 /// Whether what a line between two places of `chart` meets parts them: something opaque that is not
 /// the surface itself, which bends without being a barrier.

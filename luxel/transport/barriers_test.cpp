@@ -201,7 +201,7 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
 bool in_the_open(const Floor& floor, const trace::RayTracer& rays, Barycentric at,
                  uint32_t triangle) {
   const Vec3 p = scene::world_position(floor.scene, {0, triangle, at});
-  return !is_enclosed(floor.scene, rays, p + Vec3{0, 1e-4f, 0}, {0, 1, 0}, 64, 4);
+  return !is_enclosed(floor.scene, rays, p + Vec3{0, 1e-4f, 0}, {0, 1, 0}, 64);
 }
 
 /// The backs are farther away than any feeler reaches. A texel of which a quarter or more lies in

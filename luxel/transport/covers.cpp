@@ -6,6 +6,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 
 namespace luxel::transport {
@@ -71,27 +72,21 @@ float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float s
 
 float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer, float size_m) {
   const std::vector<scene::SurfacePoint> places = shining_places(scene);
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   const auto is_covered = [&](const scene::SurfacePoint& p) {
     const Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);
-    const Vec3 from = trace::offset_origin(scene::world_position(scene, p), normal, diagonal_m);
-    return open_share(tracer, from, normal, size_m) < 1;
+    return open_share(tracer, scene::off_surface(scene, p, normal), normal, size_m) < 1;
   };
   const auto covered = double(std::ranges::count_if(places, is_covered));
   const bool made_in_gaps = !places.empty() && covered >= kMadeInGaps * double(places.size());
   return made_in_gaps ? 0.0f : size_m;
 }
 
-std::vector<float> open_shares(const scene::Scene& scene, const trace::RayTracer& tracer,
-                               const Elements& elements, float size_m) {
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
+std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,
+                               float size_m) {
   std::vector<float> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const Vec3 normal = elements.geometric_normal[i];
-      const Vec3 from = trace::offset_origin(elements.position[i], normal, diagonal_m);
-      out[i] = open_share(tracer, from, normal, size_m);
-    }
+    for (size_t i = begin; i < end; ++i)
+      out[i] = open_share(tracer, elements.position[i], elements.geometric_normal[i], size_m);
   });
   return out;
 }

@@ -16,7 +16,7 @@ namespace luxel::transport {
 /// narrower than its gap sees the floor beside it. So places under a cover of height h are covered
 /// from 1.3 h inwards of its border, and those of the cover's lower side from 1.3 h inwards of
 /// theirs: there (1 - x / sqrt(x^2 + h^2)) / 2 = 0.1. Places beside a wall or under a table are
-/// not, however small the room. `from` lies just off the surface (trace::offset_origin); 64 fixed
+/// not, however small the room. `from` lies just off the surface (scene::off_surface); 64 fixed
 /// rays, and as many back.
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m);
 
@@ -28,7 +28,7 @@ float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float s
 float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer, float size_m);
 
 /// The open share of each element, by its geometric normal.
-std::vector<float> open_shares(const scene::Scene& scene, const trace::RayTracer& tracer,
-                               const Elements& elements, float size_m);
+std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,
+                               float size_m);
 
 }  // namespace luxel::transport

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 
 namespace luxel::transport {
@@ -25,8 +26,7 @@ scene::Scene floor_under_plate(bool up) {
 float share_at(const scene::Scene& scene, Vec3 position, Vec3 normal, float size_m) {
   const auto tracer = trace::RayTracer::build(scene);
   EXPECT_TRUE(tracer);
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
-  return open_share(*tracer, trace::offset_origin(position, normal, diagonal_m), normal, size_m);
+  return open_share(*tracer, scene::off_surface(position, normal, 1), normal, size_m);
 }
 
 TEST(Covers, TheOpenShareIsTheFormFactorOfTheGap) {

@@ -4,6 +4,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/share_out.h"
 #include "luxel/scene/facet.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/sides.h"
 
 namespace luxel::transport {
@@ -113,10 +114,12 @@ SmoothPoint smooth_point(const scene::Scene& scene, const BentFacet& facet,
                          const scene::SurfacePoint& p) {
   const scene::Triangle3& t = facet.flat.corners;
   const Vec3 at = interpolate(t.a, t.b, t.c, p.at);
-  SmoothPoint out{at, scene::shading_normal(scene, p, facet.flat.front), facet.flat.front};
-  if (!facet.bends) return out;
-  out.position = lifted(facet, at, p.at);
-  if (length(out.position - at) > kNoBulge * facet.size_m) out.geometric_normal = out.normal;
+  SmoothPoint out{at, {}, scene::shading_normal(scene, p, facet.flat.front), facet.flat.front};
+  if (facet.bends) {
+    out.position = lifted(facet, at, p.at);
+    if (length(out.position - at) > kNoBulge * facet.size_m) out.geometric_normal = out.normal;
+  }
+  out.start = scene::off_surface(out.position, out.geometric_normal, facet.flat.size_m);
   return out;
 }
 
@@ -144,7 +147,7 @@ Elements places_of(const scene::Scene& scene, const atlas::TexelMap& map) {
       if (i == begin || !in_same_triangle(p, map.texels[i - 1].sample))
         facet = bent_facet(scene, p.instance, p.triangle);
       const SmoothPoint at = smooth_point(scene, facet, p);
-      e.position[i] = at.position, e.normal[i] = at.normal;
+      e.position[i] = at.start, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
     }
   });

@@ -17,7 +17,9 @@ namespace luxel::transport {
 
 /// Structure of arrays, all of the same length.
 struct Elements {
-  MappedVector<Vec3> position;          ///< on the surface (the smooth one), world [m]
+  /// Where rays start: off the surface (the smooth one) on its front by what rounding may do
+  /// (luxel/scene/off_surface.h), world [m].
+  MappedVector<Vec3> position;
   MappedVector<Vec3> normal;            ///< unit shading normal of the front side
   MappedVector<Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
   MappedVector<Rgb> reflectance;        ///< rho in [0, 0.99]
@@ -43,7 +45,9 @@ Elements subset(const Elements& elements, std::span<const uint32_t> chosen);
 /// A point of the front side, moved to the smooth surface that vertex normals bend over its
 /// triangle.
 struct SmoothPoint {
-  Vec3 position, normal, geometric_normal;  ///< as in Elements
+  Vec3 position;                  ///< on that surface, world [m]
+  Vec3 start;                     ///< where rays start, Elements::position
+  Vec3 normal, geometric_normal;  ///< as in Elements
 };
 /// The smooth point of a surface point; on the triangle where the mesh has no normals.
 SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p);

@@ -7,6 +7,7 @@
 #include "luxel/atlas/footprint.h"
 #include "luxel/base/share_out.h"
 #include "luxel/scene/drawn_triangle.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/clear_runs.h"
 #include "luxel/transport/spots.h"
@@ -41,14 +42,13 @@ struct Outlines {
 
 /// Where walls stand between texels and within them.
 struct WallSearch : TexelSpots {
-  float diagonal_m;
   std::span<Inside> inside{};  ///< per texel, as is_inside_solid() finds it
 
   /// Whether light at a spot is never read, since it lies inside a solid for sure: more than half
   /// of what it sees would do.
   bool is_inside_solid(const Spot& s) const {
-    const Vec3 from = trace::offset_origin(s.at.position, s.at.normal, diagonal_m);
-    const BackFaces seen = count_back_faces(in.scene, in.tracer, from, s.at.normal, kRaysForInside);
+    const BackFaces seen =
+        count_back_faces(in.scene, in.tracer, just_above(s.at), s.at.normal, kRaysForInside);
     return 4 * seen.one_sided > 3 * seen.rays || 100 * all_backs(seen) >= 98 * seen.rays;
   }
   /// The answer for a texel's sample, for which rays are traced once: a texel is in many pairs.
@@ -146,8 +146,8 @@ void WallSearch::find_parted_within(std::span<const uint32_t> texels, const Outl
 /// Whether nothing is in the way of lines between the texels of a run and their neighbours on its
 /// triangle.
 bool WallSearch::has_clear_lines(TexelRun run) const {
-  const scene::SurfacePoint& p = in.map.texels[run.first].sample;
-  const float rounding_m = trace::rounding_m(scene::world_position(in.scene, p), diagonal_m);
+  const FlatPoint p = flat_point(in.scene, in.map.texels[run.first].sample);
+  const float rounding_m = scene::rounding_m(p.position, p.size_m);
   return is_clear(in.scene, in.atlas, in.map, in.tracer, run,
                   {-rounding_m, 1.01f * kLineHeight, 0, false});
 }
@@ -257,7 +257,7 @@ Result<OwnSides> find_own_sides(const scene::Scene& scene, const atlas::Atlas& a
   OwnSides out{scene, atlas, map, tracer};
   LUXEL_TRY(out.under, find_under(out, team, progress));
   std::vector<Inside> inside(map.texels.size());
-  const WallSearch search{{out}, scene::world_bounds(scene).diagonal(), inside};
+  const WallSearch search{{out}, inside};
   LUXEL_TRY(const Walls walls, search.find_walls(team, progress));
   out.mixed = blocks_of(map, walls.parted), out.beside_solids = blocks_of(map, walls.beside);
   return out;

@@ -67,7 +67,7 @@ constexpr auto kPlaces = [] {
 
 bool PlaceSearch::in_the_open(const scene::SurfacePoint& p) const {
   const FlatPoint at = flat_point(scene, p);
-  return is_in_the_open(scene, tracer, just_above(at), at.normal, diagonal_m);
+  return is_in_the_open(scene, tracer, just_above(at), at.normal);
 }
 
 ChartTriangles triangles_of_charts(const atlas::Atlas& atlas) {

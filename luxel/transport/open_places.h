@@ -15,11 +15,7 @@ struct PlaceSearch {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
   const trace::RayTracer& tracer;
-  float diagonal_m = 0;
 
-  Vec3 just_above(const FlatPoint& p) const {
-    return trace::offset_origin(p.position, p.normal, diagonal_m);
-  }
   /// is_in_the_open() of a place of a surface.
   bool in_the_open(const scene::SurfacePoint& p) const;
 };

@@ -29,7 +29,9 @@ Spot SpotMaker::spot(const scene::SurfacePoint& p) {
     instance = p.instance, triangle = p.triangle;
     facet = scene::facet_of(scene, instance, triangle);
     const uint32_t number = atlas.triangle_number(instance, triangle);
-    last = {{{}, facet.front}, atlas.chart[number], texel_width_m(atlas, number, facet.corners)};
+    last = {{{}, facet.front, facet.size_m},
+            atlas.chart[number],
+            texel_width_m(atlas, number, facet.corners)};
   }
   const scene::Triangle3& t = facet.corners;
   last.at.position = interpolate(t.a, t.b, t.c, p.at);

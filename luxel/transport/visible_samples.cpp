@@ -7,6 +7,8 @@
 #include "luxel/base/share_out.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/drawn_triangle.h"
+#include "luxel/scene/facet.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/clear_runs.h"
 #include "luxel/transport/open_places.h"
 #include "luxel/transport/texel_width.h"
@@ -39,7 +41,9 @@ struct Probe : PlaceSearch {
   /// Whether the feelers of a run's samples meet nothing.
   bool has_clear_feelers(const atlas::TexelMap& map, TexelRun run) const {
     const scene::SurfacePoint& p = map.texels[run.first].sample;
-    const float rounding_m = trace::rounding_m(scene::world_position(scene, p), diagonal_m);
+    // No feeler of the run starts lower than this, twice.
+    const float rounding_m =
+        scene::rounding_m({}, scene::facet_of(scene, p.instance, p.triangle).size_m);
     return is_clear(scene, atlas, map, tracer, run,
                     {0.5f * rounding_m, 1.01f * kReach * kFeelerSlope, kReach, true});
   }
@@ -223,13 +227,14 @@ bool meets_any(std::span<const Box3> boxes, const Box3& other, float within_m) {
 /// away for all of them.
 std::vector<float> reaches_to(const Probe& probe, std::span<const Box3> boxes) {
   std::vector<float> out(probe.atlas.corners.size(), -1.0f);
+  const float slack_m = 1e-4f * scene::world_bounds(probe.scene).diagonal();
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       const auto [instance, triangle] =
           scene::drawn_triangle(probe.atlas.first_triangle, uint32_t(k));
       // Feelers start a little above their sample, which rounding may put beside the triangle.
-      const float reach = kReach * texel_width_m(probe.scene, probe.atlas, instance, triangle) +
-                          1e-4f * probe.diagonal_m;
+      const float reach =
+          kReach * texel_width_m(probe.scene, probe.atlas, instance, triangle) + slack_m;
       const scene::Triangle3 t = scene::world_triangle(probe.scene, instance, triangle);
       Box3 bounds;
       for (const Vec3& corner : {t.a, t.b, t.c}) bounds.extend(corner);
@@ -248,8 +253,7 @@ Result<MovedSamples> move_samples_out_of_solids(const scene::Scene& scene,
                                                 Team* team) {
   std::vector<uint32_t> all(map.texels.size());
   std::iota(all.begin(), all.end(), 0);
-  return move_some({{scene, atlas, tracer, scene::world_bounds(scene).diagonal()}}, all, map, team,
-                   progress);
+  return move_some({{scene, atlas, tracer}}, all, map, team, progress);
 }
 
 Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -257,7 +261,7 @@ Result<MovedSamples> move_samples_near_changes(const scene::Scene& scene, const 
                                                std::span<const Box3> boxes,
                                                std::span<const uint32_t> near_back_faces,
                                                atlas::TexelMap& map, Progress& progress) {
-  const Probe probe{{scene, atlas, tracer, scene::world_bounds(scene).diagonal()}};
+  const Probe probe{{scene, atlas, tracer}};
   const std::vector<float> reaches = reaches_to(probe, boxes);
   std::vector<uint8_t> look(map.texels.size());
   for (const uint32_t i : near_back_faces) look[i] = 1;

@@ -6,6 +6,7 @@
 #include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/pipeline/solver/matrix.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/irradiance_field.h"
 
 namespace luxel::validate {
@@ -29,8 +30,8 @@ Result<Answers> follow_paths(const Prepared& p, const MeasureEffort& effort, Pro
   Answers out{scene::points_uniform_in_area(p.scene, effort.path_points, 1), {}, {}};
   std::vector<Vec3> position, normal;
   for (const scene::SurfacePoint& at : out.at) {
-    position.push_back(scene::world_position(p.scene, at));
     normal.push_back(scene::front_normal(p.scene, at.instance, at.triangle));
+    position.push_back(scene::off_surface(p.scene, at, normal.back()));
   }
   LUXEL_TRY(const reference::TexelPaths paths,
             reference::irradiance_by_paths(p.scene, {position, normal, normal}, *p.tracer,

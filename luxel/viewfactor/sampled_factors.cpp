@@ -58,14 +58,11 @@ struct Row {
   const Surfaces& surfaces;
   const trace::RayTracer& tracer;
   SurfaceSampler sampler;
-  float diagonal = 0;
   uint64_t seed = 0;
   uint32_t samples = 0;
 
   SurfaceSample sample(const FourNumbers& numbers) const {
-    SurfaceSample at = sample_surface(sampler, numbers.first);
-    at.position = trace::offset_origin(at.position, at.normal, diagonal);
-    return at;
+    return sample_surface(sampler, numbers.first);
   }
 };
 
@@ -177,19 +174,14 @@ Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& 
   const size_t rows = selection.from == scene::kNone ? width : 1;
   const size_t rays_per_sample = by_hemicube ? cube.direction.size() : 1;
   progress.begin("trace rays", uint64_t(rows) * params.samples * rays_per_sample);
-  const float diagonal = scene::world_bounds(scene).diagonal();
   const auto factor_of = [&](size_t i) {
     return std::span(matrix.factor).subspan(i * width, width);
   };
   const auto error_of = [&](size_t i) { return std::span(matrix.error).subspan(i * width, width); };
   const auto look_from = [&](size_t piece) {
     const uint32_t i = selection.from == scene::kNone ? uint32_t(piece) : selection.from;
-    const Row row{surfaces,
-                  tracer,
-                  make_surface_sampler(scene, surfaces.surfaces[i].instance),
-                  diagonal,
-                  hash64(params.seed, i),
-                  params.samples};
+    const Row row{surfaces, tracer, make_surface_sampler(scene, surfaces.surfaces[i].instance),
+                  hash64(params.seed, i), params.samples};
     if (by_hemicube)
       row_by_hemicubes(row, cube, factor_of(i), error_of(i), progress);
     else

@@ -5,6 +5,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/off_surface.h"
 
 namespace luxel::viewfactor {
 namespace {
@@ -22,10 +23,9 @@ SurfaceSampler make_surface_sampler(const scene::Scene& scene, uint32_t instance
   const size_t count = scene.meshes[scene.instances[instance].mesh].triangles.size();
   double sum = 0;
   for (uint32_t t = 0; t < count; ++t) {
-    sampler.triangles.push_back(scene::world_triangle(scene, instance, t));
-    sampler.normals.push_back(scene::front_normal(scene, instance, t));
+    sampler.triangles.push_back(scene::facet_of(scene, instance, t));
     sampler.area_below.push_back(sum);
-    sum += double(scene::area_m2(sampler.triangles.back()));
+    sum += double(scene::area_m2(sampler.triangles.back().corners));
   }
   sampler.area_below.push_back(sum);
   return sampler;
@@ -39,9 +39,8 @@ SurfaceSample sample_surface(const SurfaceSampler& sampler, Vec2 u) {
   // What is left of u.x after the choice is uniform again.
   const double rest = (at - below[t]) / (below[t + 1] - below[t]);
   const float x = float(std::clamp(rest, 0.0, 0x1.fffffep-1));
-  const scene::Triangle3& triangle = sampler.triangles[t];
-  return {interpolate(triangle.a, triangle.b, triangle.c, triangle_sample({x, u.y})),
-          sampler.normals[t]};
+  const scene::Facet& triangle = sampler.triangles[t];
+  return {scene::off_surface(triangle, triangle_sample({x, u.y}), triangle.front), triangle.front};
 }
 
 FourNumbers stratified_4d(uint32_t index, uint64_t seed) {

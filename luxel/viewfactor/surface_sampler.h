@@ -4,20 +4,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "luxel/scene/scene.h"
+#include "luxel/scene/facet.h"
 
 namespace luxel::viewfactor {
 
 /// The triangles of an instance, to be chosen by area.
 struct SurfaceSampler {
-  std::vector<scene::Triangle3> triangles;
-  std::vector<Vec3> normals;       ///< of the front sides
+  std::vector<scene::Facet> triangles;
   std::vector<double> area_below;  ///< before each triangle; one extra entry
 };
 SurfaceSampler make_surface_sampler(const scene::Scene& scene, uint32_t instance);
 
 struct SurfaceSample {
-  Vec3 position, normal;
+  Vec3 position;  ///< just off the surface (scene::off_surface)
+  Vec3 normal;    ///< of the front
 };
 /// Uniform in area for uniform u.
 SurfaceSample sample_surface(const SurfaceSampler& sampler, Vec2 u);

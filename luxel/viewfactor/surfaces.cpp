@@ -33,7 +33,7 @@ std::string unique_name(const scene::Scene& scene, uint32_t instance, Names& nam
 
 }  // namespace
 
-double rounding_m(const scene::Scene& scene) {
+double corner_rounding_m(const scene::Scene& scene) {
   const Box3 bounds = scene::world_bounds(scene);
   if (bounds.empty()) return 0;
   double largest = 0;
@@ -62,7 +62,7 @@ Result<Surfaces> surfaces_of(const scene::Scene& scene, Progress& progress) {
   progress.begin("join polygons", scene::first_triangles(scene).back());
   Surfaces out;
   out.of_instance.assign(scene.instances.size(), scene::kNone);
-  out.slack_m = rounding_m(scene);
+  out.slack_m = corner_rounding_m(scene);
   if (out.slack_m == 0) return out;
   Names names;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {

@@ -13,7 +13,7 @@
 namespace luxel::viewfactor {
 
 /// How far rounding to float may have moved a corner [m]; 0 without any.
-double rounding_m(const scene::Scene& scene);
+double corner_rounding_m(const scene::Scene& scene);
 
 /// An instance's triangles in the world, corners counter-clockwise from the front also where the
 /// instance mirrors.
@@ -31,7 +31,7 @@ struct Surface {
 struct Surfaces {
   std::vector<Surface> surfaces;
   std::vector<uint32_t> of_instance;  ///< per instance; scene::kNone when it has no area
-  double slack_m = 0;                 ///< rounding_m of the scene
+  double slack_m = 0;                 ///< corner_rounding_m of the scene
   std::vector<std::string> warnings;  ///< surfaces that were left out
 };
 

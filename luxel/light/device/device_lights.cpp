@@ -16,12 +16,12 @@ namespace {
 struct DeviceTriangleLight {
   Vec3 a, b, c, normal;
   Rgb radiance;
-  float area_m2;
+  float area_m2, size_m;
   uint32_t instance, triangle, piece;
   uint32_t two_sided;
   uint32_t texture = 0;  ///< 1 + the number of a LightTexture; 0: it is even
 };
-static_assert(sizeof(DeviceTriangleLight) == 84);
+static_assert(sizeof(DeviceTriangleLight) == 88);
 static_assert(sizeof(LightNode) == 76);
 
 struct DevicePunctualLight {
@@ -56,15 +56,24 @@ struct Setup {
   VkDeviceAddress triangles, nodes, textures, texels, linear_of_byte;
   VkDeviceAddress punctual, punctual_order, punctual_nodes, profiles, profile_values;
   VkDeviceAddress bright_texels, guide, below, row_cosine, pixels;
-  float diagonal_m, rotation_rad;
+  float rotation_rad;
   int32_t map_width;
   uint32_t triangle_count, punctual_count, bright_count;
 };
 static_assert(sizeof(Setup) == 184);
 
 DeviceTriangleLight device_light(const TriangleLight& light) {
-  return {light.a,       light.b,        light.c,        light.normal, light.mean_radiance,
-          light.area_m2, light.instance, light.triangle, light.piece,  uint32_t(light.two_sided)};
+  return {light.a,
+          light.b,
+          light.c,
+          light.normal,
+          light.mean_radiance,
+          light.area_m2,
+          light.size_m,
+          light.instance,
+          light.triangle,
+          light.piece,
+          uint32_t(light.two_sided)};
 }
 
 DevicePunctualLight device_light(const scene::PunctualLight& light) {
@@ -194,7 +203,6 @@ Result<DeviceLights> upload_lights(gpu::Commands& commands, const trace::DeviceR
                     .below = out.below.address,
                     .row_cosine = out.row_cosine.address,
                     .pixels = out.pixels.address,
-                    .diagonal_m = scene::world_bounds(scene).diagonal(),
                     .rotation_rad = scene.environment.rotation_rad,
                     .map_width = scene.environment.width,
                     .triangle_count = uint32_t(lights.triangles.size()),

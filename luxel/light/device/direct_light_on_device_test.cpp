@@ -21,7 +21,7 @@ transport::Elements places_of(const scene::Scene& scene, size_t count) {
   transport::Elements out;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, count, 3)) {
     const transport::SmoothPoint s = transport::smooth_point(scene, p);
-    out.position.push_back(s.position), out.normal.push_back(s.normal);
+    out.position.push_back(s.start), out.normal.push_back(s.normal);
     out.geometric_normal.push_back(s.geometric_normal);
     out.reflectance.push_back({0.5f, 0.5f, 0.5f});
   }
@@ -289,16 +289,13 @@ TEST_F(DirectLightOnDevice, IsThatOfPunctualLightsAlone) {
   const auto on_processor = trace::RayTracer::build(scene);
   const auto on_device = trace::DeviceRayTracer::build(*device_, scene);
   ASSERT_TRUE(on_processor && on_device);
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<Receiver> receivers;
   for (size_t i = 0; i < elements.size(); ++i)
     receivers.push_back(
-        {elements.position[i], elements.normal[i], elements.geometric_normal[i],
-         trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-         hash64(3, i)});
+        {elements.position[i], elements.normal[i], elements.geometric_normal[i], hash64(3, i)});
   std::vector<LightAt> expected(receivers.size()), found(receivers.size());
   ShadowRayBatch batch;
-  punctual_light_at({scene, lights, *on_processor, diagonal_m}, 8, receivers, batch, expected);
+  punctual_light_at({scene, lights, *on_processor}, 8, receivers, batch, expected);
   auto device = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
   ASSERT_TRUE(device);
   Progress progress;

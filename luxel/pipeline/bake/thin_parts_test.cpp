@@ -6,6 +6,7 @@
 #include "luxel/pipeline/texels/resolution.h"
 #include "luxel/reference/path_tracer.h"
 #include "luxel/scene/drawn_triangle.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/elements.h"
@@ -40,14 +41,13 @@ scene::Scene facade() {
 std::vector<scene::SurfacePoint> open_points(const Bake& bake, const trace::RayTracer& tracer,
                                              uint32_t triangle, uint32_t count) {
   const auto drawn = scene::drawn_triangle(bake.atlas.first_triangle, triangle);
-  const float diagonal = scene::world_bounds(bake.scene).diagonal();
   std::vector<scene::SurfacePoint> out;
   for (uint32_t k = 0; k < count; ++k) {
     Vec2 u = sobol_owen_2d(k, triangle);
     if (u.x + u.y > 1) u = {1 - u.x, 1 - u.y};
     const scene::SurfacePoint p{drawn.instance, drawn.triangle, {u.x, u.y}};
     const Vec3 n = scene::front_normal(bake.scene, p.instance, p.triangle);
-    const Vec3 from = trace::offset_origin(scene::world_position(bake.scene, p), n, diagonal);
+    const Vec3 from = scene::off_surface(bake.scene, p, n);
     if (transport::all_backs(transport::count_back_faces(bake.scene, tracer, from, n, 32)) == 0)
       out.push_back(p);
   }
@@ -58,8 +58,8 @@ Rgb mean_by_paths(const Bake& bake, const trace::RayTracer& tracer,
                   std::span<const scene::SurfacePoint> points) {
   std::vector<Vec3> position, normal;
   for (const scene::SurfacePoint& p : points) {
-    position.push_back(scene::world_position(bake.scene, p));
     normal.push_back(scene::front_normal(bake.scene, p.instance, p.triangle));
+    position.push_back(scene::off_surface(bake.scene, p, normal.back()));
   }
   const std::array<uint32_t, 2> first{0, uint32_t(points.size())};
   Progress progress;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/elements.h"
 
 namespace luxel::pipeline {
@@ -77,6 +78,8 @@ NearestSurface nearest_surface(const scene::Scene& scene, Vec3 at, std::optional
   const transport::SmoothPoint smooth = transport::smooth_point(scene, best.point);
   best.position = smooth.position, best.normal = smooth.normal * best_side;
   best.geometric_normal = smooth.geometric_normal * best_side;
+  const scene::Facet facet = scene::facet_of(scene, best.point.instance, best.point.triangle);
+  best.start = scene::off_surface(best.position, best.geometric_normal, facet.size_m);
   return best;
 }
 

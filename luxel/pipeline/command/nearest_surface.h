@@ -9,8 +9,10 @@ namespace luxel::pipeline {
 
 struct NearestSurface {
   scene::SurfacePoint point;
-  Vec3 position{}, normal{}, geometric_normal{};  ///< of the side that is meant; unit
-  float distance_m = INFINITY;                    ///< infinite: there is none
+  Vec3 position{};                    ///< on the smooth surface
+  Vec3 start{};                       ///< where rays start there, on the side that is meant
+  Vec3 normal{}, geometric_normal{};  ///< of that side; unit
+  float distance_m = INFINITY;        ///< infinite: there is none
 };
 
 /// Surfaces that `facing` is given for count only where their normal is within 45 degrees of it.

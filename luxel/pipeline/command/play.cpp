@@ -15,6 +15,7 @@
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/command/light_script.h"
 #include "luxel/post/dilate.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/matrix/live_light.h"
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/solve/matrix/relighter.h"
@@ -30,7 +31,6 @@ struct View {
   scene::Scene scene;  ///< of the file; its materials glow as the script says
   std::optional<trace::RayTracer> tracer;
   scene::Camera camera;
-  float diagonal_m = 0;
 };
 
 /// The places of an .lxr file as something that can be looked up.
@@ -108,8 +108,6 @@ Result<std::unique_ptr<View>> set_up(const PlaySettings& s, const matrix::Religh
   view->scene.background = data.background;
   LUXEL_TRY(view->tracer, trace::RayTracer::build(view->scene));
   LUXEL_TRY(view->camera, camera_of(script, view->scene, *view->tracer, name));
-  const Box3 bounds = scene::world_bounds(view->scene);
-  view->diagonal_m = length(bounds.upper - bounds.lower);
   out.width = script.width, out.height = script.height;
   return view;
 }
@@ -162,12 +160,11 @@ Result<image::Image> draw_frame(const View& view, const PlaceLight& indirect,
                                 const FrameLights& lights, const LightScript& script,
                                 Progress& progress) {
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    const Vec3 position = scene::world_position(view.scene, p);
     const Vec3 normal = scene::shading_normal(view.scene, p);
     const Vec3 geometric = scene::front_normal(view.scene, p.instance, p.triangle);
+    const Vec3 position = scene::off_surface(view.scene, p, geometric);
     return indirect.at(p) + matrix::live_light_at({{&position, 1}, {&normal, 1}, {&geometric, 1}},
-                                                  0, lights.punctual, *view.tracer,
-                                                  view.diagonal_m);
+                                                  0, lights.punctual, *view.tracer);
   };
   display::DrawParams params;
   params.width = script.width, params.height = script.height;

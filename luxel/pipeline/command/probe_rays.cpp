@@ -11,6 +11,7 @@
 #include "luxel/pipeline/command/nearest_surface.h"
 #include "luxel/pipeline/command/probe.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -101,7 +102,7 @@ Result<Place> find_place(const ProbeSettings& s, const scene::Scene& scene, Prob
   out.material = scene::material_at(scene, nearest.point).name;
   out.position = nearest.position, out.normal = nearest.normal;
   out.distance_m = nearest.distance_m;
-  return Place{nearest.position, nearest.normal, nearest.geometric_normal};
+  return Place{nearest.start, nearest.normal, nearest.geometric_normal};
 }
 
 /// Rays with the density of the cosine that look for what the place sees.
@@ -111,17 +112,14 @@ struct Look {
   std::vector<Rgb> tints;
 };
 
-Look look_from(const ProbeSettings& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-               const Place& place) {
+Look look_from(const ProbeSettings& s, const trace::RayTracer& tracer, const Place& place) {
   Look out;
   const Frame frame = frame_around(place.normal);
-  const Vec3 from = trace::offset_origin(place.position, place.geometric_normal,
-                                         scene::world_bounds(scene).diagonal());
   for (uint32_t k = 0; k < kLookingRays; ++k) {
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, hash64(s.seed, 7))));
     // A ray that a bent normal sends below the surface meets nothing.
     const bool above = dot(d, place.geometric_normal) > 0;
-    out.rays.push_back({from, 0, d, above ? INFINITY : 0.0f});
+    out.rays.push_back({place.position, 0, d, above ? INFINITY : 0.0f});
   }
   out.hits.resize(out.rays.size());
   tracer.closest_hits(out.rays, out.hits);
@@ -185,8 +183,10 @@ Result<std::vector<Rgb>> reflected_by_paths(const ProbeSettings& s, const scene:
     if (!hit.found() || is_dark_back(scene, hit)) continue;
     const transport::SmoothPoint at = transport::smooth_point(scene, hit.point());
     const float side = hit.back_face ? -1.0f : 1.0f;
-    rays.push_back(k), positions.push_back(at.position);
-    normals.push_back(at.normal * side), geometric_normals.push_back(at.geometric_normal * side);
+    const scene::Facet facet = scene::facet_of(scene, hit.instance, hit.triangle);
+    rays.push_back(k), normals.push_back(at.normal * side);
+    geometric_normals.push_back(at.geometric_normal * side);
+    positions.push_back(scene::off_surface(at.position, geometric_normals.back(), facet.size_m));
   }
   LUXEL_TRY(const reference::TexelPaths paths,
             reference::irradiance_by_paths(scene, {positions, normals, geometric_normals}, tracer,
@@ -253,7 +253,7 @@ Result<Probed> probe_by_paths(const ProbeSettings& s, const scene::Scene& scene,
   const Clock::time_point start = Clock::now();
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const Place place, find_place(s, scene, out));
-  const Look look = look_from(s, scene, tracer, place);
+  const Look look = look_from(s, tracer, place);
   LUXEL_TRY(const std::vector<Rgb> reflected, reflected_by_paths(s, scene, tracer, look, progress));
   out.sources = sources_of(scene, look, reflected);
   LUXEL_TRY_STATUS(trace_rounds(s, scene, tracer, place, start, out, progress));
@@ -270,14 +270,12 @@ Result<Probed> probe_in_bake(const ProbeSettings& s, Progress& progress) {
             read_lit_bake(s.scene, s.reading, s.from, s.outside));
   Probed out;
   out.warnings = bake->warnings, out.unit = bake->unit;
-  LUXEL_TRY(Place place, find_place(s, bake->baked, out));
+  LUXEL_TRY(const Place place, find_place(s, bake->baked, out));
   if (!s.in_air) {
     const NearestSurface nearest = nearest_surface(bake->baked, s.at, s.normal);
     out.interpolated = lightmap_of(*bake, nearest.point);
-    place.position = trace::offset_origin(place.position, place.geometric_normal,
-                                          scene::world_bounds(bake->scene).diagonal());
   }
-  const Look look = look_from(s, bake->baked, *bake->baked_tracer, place);
+  const Look look = look_from(s, *bake->baked_tracer, place);
   std::vector<Rgb> reflected(look.rays.size());
   const auto irradiance = [&](const scene::SurfacePoint& p) { return lightmap_of(*bake, p); };
   for (size_t k = 0; k < reflected.size(); ++k)

@@ -21,6 +21,7 @@
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/post/dilate.h"
 #include "luxel/scene/brightness.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/validate.h"
 #include "luxel/solve/matrix/codec.h"
 #include "luxel/solve/matrix/lxr.h"
@@ -106,14 +107,18 @@ matrix::Target vertices_of(const scene::Scene& scene) {
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     std::vector<Vec3> facing(mesh.positions.size());
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      for (const uint32_t v : mesh.triangles[t])
-        facing[v] +=
-            scene::front_normal(scene, i, t) * scene::area_m2(scene::world_triangle(scene, i, t));
+    std::vector<float> size_m(mesh.positions.size());  // the largest of its triangles
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const scene::Facet facet = scene::facet_of(scene, i, t);
+      for (const uint32_t v : mesh.triangles[t]) {
+        facing[v] += facet.front * scene::area_m2(facet.corners);
+        size_m[v] = std::max(size_m[v], facet.size_m);
+      }
+    }
     for (size_t v = 0; v < mesh.positions.size(); ++v) {
       const Vec3 normal = dot(facing[v], facing[v]) > 0 ? normalize(facing[v]) : Vec3{0, 1, 0};
-      target.position.push_back(
-          transform_point(scene.instances[i].world_from_object, mesh.positions[v]));
+      const Vec3 at = transform_point(scene.instances[i].world_from_object, mesh.positions[v]);
+      target.position.push_back(scene::off_surface(at, normal, size_m[v]));
       target.normal.push_back(normal), target.geometric_normal.push_back(normal);
     }
   }

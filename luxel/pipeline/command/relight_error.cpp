@@ -129,7 +129,7 @@ transport::Elements places_to_check(const scene::Scene& scene, uint64_t seed) {
   transport::Elements out;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPlaces, seed)) {
     const transport::SmoothPoint at = transport::smooth_point(scene, p);
-    out.position.push_back(at.position), out.normal.push_back(at.normal);
+    out.position.push_back(at.start), out.normal.push_back(at.normal);
     out.geometric_normal.push_back(at.geometric_normal);
   }
   return out;

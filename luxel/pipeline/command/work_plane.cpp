@@ -201,7 +201,7 @@ enum class Kept : uint8_t { no_floor, in_solid, in_boundary, yes };
 /// The points of one floor's grid.
 void add_points(const scene::Scene& scene, const trace::RayTracer& tracer, const Level& level,
                 const WorkPlaneParams& params, Floor& floor, Progress& progress) {
-  const float diagonal_m = scene::world_bounds(scene).diagonal(), skip_m = 1e-5f * diagonal_m;
+  const float skip_m = 1e-5f * scene::world_bounds(scene).diagonal();
   const size_t cells = size_t(floor.columns) * size_t(floor.rows);
   std::vector<PlanePoint> points(cells);
   std::vector<Kept> kept(cells, Kept::no_floor);
@@ -225,8 +225,7 @@ void add_points(const scene::Scene& scene, const trace::RayTracer& tracer, const
       const bool no_floor = ground == -INFINITY;
       point.position = {from.x, (no_floor ? float(floor.y) : ground) + float(params.plane_m),
                         from.z};
-      if (transport::is_enclosed(scene, tracer, point.position, {0, 1, 0}, kEnclosureRays,
-                                 diagonal_m))
+      if (transport::is_enclosed(scene, tracer, point.position, {0, 1, 0}, kEnclosureRays))
         kept[i] = Kept::in_solid;
       else if (!no_floor)
         kept[i] = params.boundary_m > 0 && is_near_a_wall(tracer, point.position, params.boundary_m)

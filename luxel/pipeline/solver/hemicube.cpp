@@ -44,8 +44,7 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
                           float cover_size_m) {
   TexelLight out;
   const atlas::TexelMap& map = in.map;
-  const std::vector<float> open =
-      transport::open_shares(in.scene, in.tracer, in.elements, cover_size_m);
+  const std::vector<float> open = transport::open_shares(in.tracer, in.elements, cover_size_m);
   out.irradiance.resize(map.texels.size()), out.hidden.resize(map.texels.size());
   parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

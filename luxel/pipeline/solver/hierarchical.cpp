@@ -49,7 +49,7 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   out.irradiance.resize(in.map.texels.size());
   // Where something much closer than elements covers a texel, they have no light to tell.
   const std::vector<float> open =
-      transport::open_shares(in.scene, in.tracer, in.elements, cover_size_m(solution));
+      transport::open_shares(in.tracer, in.elements, cover_size_m(solution));
   parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       out.irradiance[i] =

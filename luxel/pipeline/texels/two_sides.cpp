@@ -11,6 +11,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/position_numbers.h"
 #include "luxel/scene/sides.h"
 #include "luxel/trace/ray_tracer.h"
@@ -117,7 +118,6 @@ struct ShellScene {
   const std::vector<Shells>& shells;  ///< per mesh
   std::vector<Vec3> light_positions;  ///< of point and spot lights, and on emissive surfaces
   bool sky_shines = false;            ///< light comes from where there is no surface
-  float diagonal_m = 0;
 
   const Shells& shells_at(uint32_t instance) const {
     return shells[scene.instances[instance].mesh];
@@ -151,8 +151,7 @@ std::vector<Vec3> lamp_positions(const scene::Scene& scene) {
 
 ShellScene shell_scene_of(const scene::Scene& scene, const trace::RayTracer& tracer,
                           const std::vector<Shells>& shells) {
-  ShellScene shell_scene{
-      scene, tracer, shells, lamp_positions(scene), false, scene::world_bounds(scene).diagonal()};
+  ShellScene shell_scene{scene, tracer, shells, lamp_positions(scene)};
   shell_scene.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
   for (const scene::PunctualLight& light : scene.lights)
     if (scene::has_position(light.kind))
@@ -181,8 +180,7 @@ Verdict judge(const ShellScene& shell_scene, const Placed& own, const trace::Ray
 
 trace::Ray ray_from(const ShellScene& shell_scene, const scene::SurfacePoint& p, Vec3 side,
                     RandomStream& random) {
-  const Vec3 origin = trace::offset_origin(scene::world_position(shell_scene.scene, p), side,
-                                           shell_scene.diagonal_m);
+  const Vec3 origin = scene::off_surface(shell_scene.scene, p, side);
   const Vec3 d = frame_around(side).to_world(cosine_hemisphere_sample(random.next2()));
   return {origin, 0, d, INFINITY};
 }

@@ -9,6 +9,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/trace/ray_tracer.h"
 
@@ -93,8 +94,8 @@ Result<std::vector<SideLight>> light_of(const scene::Scene& scene, const trace::
     std::vector<Vec3> position, normal;
     for (const scene::SurfacePoint& p :
          points.subspan(begin, std::min(kPointsAtOnce, points.size() - begin))) {
-      position.push_back(scene::world_position(scene, p));
       normal.push_back(scene::front_normal(scene, p.instance, p.triangle) * side);
+      position.push_back(scene::off_surface(scene, p, normal.back()));
     }
     params.seed = hash64(kPointSeed, begin);
     Progress own;  // the path tracer's stage is one of the light, which this is not
@@ -157,7 +158,7 @@ bool is_looked_at(const scene::Scene& scene, const trace::RayTracer& tracer,
                   const scene::SurfacePoint& p, float diagonal_m, bool front_is_black,
                   uint64_t seed) {
   const Vec3 behind = -scene::front_normal(scene, p.instance, p.triangle);
-  const Vec3 from = trace::offset_origin(scene::world_position(scene, p), behind, diagonal_m);
+  const Vec3 from = scene::off_surface(scene, p, behind);
   const auto frame = frame_around(behind);
   uint32_t standing = 0;
   for (uint32_t k = 0; k < kEyes; ++k) {

@@ -121,7 +121,8 @@ TEST_F(PathsOnDevice, HaveTheLightOfAnEvenSky) {
   ASSERT_TRUE(tracer);
   auto on_device = DevicePathTracer::make(*device_, scene, *tracer);
   ASSERT_TRUE(on_device);
-  const std::vector<Vec3> position{{0, 0, 0}, {0.1f, 0, 0}, {0.2f, 0, 0}}, normal(3, {0, 1, 0});
+  const std::vector<Vec3> position{{0, 1e-6f, 0}, {0.1f, 1e-6f, 0}, {0.2f, 1e-6f, 0}},
+      normal(3, {0, 1, 0});
   const std::vector<uint32_t> first{0, 2, 3};
   Progress progress;
   const auto found =

@@ -23,11 +23,12 @@ struct PathTriangle {
   uint32_t other_side;
   float pdf_area;
   float size_m;
+  float size_for_rounding_m;
 
   static constexpr uint32_t kBasePlaced = 1, kMetalPlaced = 2, kEmissionPlaced = 4, kCurved = 8,
                             kBends = 16;
 };
-static_assert(sizeof(PathTriangle) == 224);
+static_assert(sizeof(PathTriangle) == 228);
 
 struct PathMaterial {
   Rgb base_color, emission;
@@ -54,13 +55,11 @@ struct PathSetup {
   VkDeviceAddress triangles, materials, texels, linear_of_byte, emitters, chance_below, lights,
       row_below, column_below, pixels;
   Rgb background;
-  float diagonal_m;
   float rotation_rad;
   int32_t map_width, map_height;
   uint32_t emitter_count, light_count;
-  uint32_t unused = 0;
 };
-static_assert(sizeof(PathSetup) == 160);
+static_assert(sizeof(PathSetup) == 152);
 
 template <class T>
 Result<gpu::Buffer> uploaded(gpu::Commands& commands, std::span<const T> values) {
@@ -82,6 +81,7 @@ PathTriangle path_triangle(const TracedScene& world, uint32_t instance, uint32_t
   t.corner = {corners.a, corners.b, corners.c};
   t.front = world.surfaces.front[number];
   t.size_m = std::sqrt(scene::area_m2(corners));
+  t.size_for_rounding_m = world.surfaces.size_m[number];
   for (size_t k = 0; k < 3; ++k) {
     const uint32_t vertex = mesh.triangles[triangle][k];
     t.color[k] = mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[vertex];
@@ -199,7 +199,6 @@ Result<PathBuffersOnDevice> upload_world(gpu::Commands& commands,
                         .column_below = out.column_below.address,
                         .pixels = out.pixels.address,
                         .background = world.scene.background,
-                        .diagonal_m = world.diagonal_m,
                         .rotation_rad = map.rotation_rad,
                         .map_width = map.empty() ? 0 : map.width,
                         .map_height = map.empty() ? 0 : map.height,

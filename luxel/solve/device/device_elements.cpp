@@ -13,14 +13,11 @@ static_assert(sizeof(DeviceElement) == 36);
 
 }  // namespace
 
-Result<gpu::Buffer> upload_elements(gpu::Commands& commands, const transport::Elements& elements,
-                                    float diagonal_m) {
+Result<gpu::Buffer> upload_elements(gpu::Commands& commands, const transport::Elements& elements) {
   std::vector<DeviceElement> values(elements.size());
   parallel_for(values.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      values[i] = {
-          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-          elements.normal[i], elements.geometric_normal[i]};
+      values[i] = {elements.position[i], elements.normal[i], elements.geometric_normal[i]};
   });
   return gpu::uploaded(commands, std::as_bytes(std::span(values)), "the buffer of elements");
 }

@@ -11,7 +11,6 @@ namespace luxel::device {
 inline constexpr size_t kTogether = 64;
 
 /// Some elements. Errors: no memory, the device is lost.
-Result<gpu::Buffer> upload_elements(gpu::Commands& commands, const transport::Elements& elements,
-                                    float diagonal_m);
+Result<gpu::Buffer> upload_elements(gpu::Commands& commands, const transport::Elements& elements);
 
 }  // namespace luxel::device

@@ -138,11 +138,9 @@ std::vector<DeviceNode> device_nodes(const hemicube::Senders& s) {
   return out;
 }
 
-DeviceViewpoint device_viewpoint(const hemicube::Viewpoint& from, float diagonal_m) {
+DeviceViewpoint device_viewpoint(const hemicube::Viewpoint& from) {
   const Frame frame = hemicube::frame_of_cube(from.normal);
-  return {frame.tangent, frame.bitangent, frame.normal,
-          trace::offset_origin(from.position, from.geometric_normal, diagonal_m),
-          from.geometric_normal};
+  return {frame.tangent, frame.bitangent, frame.normal, from.position, from.geometric_normal};
 }
 
 template <class T>
@@ -217,11 +215,11 @@ Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
 
 /// Looks from some viewpoints: what they see lies in views_back and shares_back then. Returns the
 /// seconds.
-Result<double> look_from(std::span<const hemicube::Viewpoint> from, float diagonal_m,
-                         LookShader& shader, Looking& l, const Progress& progress) {
+Result<double> look_from(std::span<const hemicube::Viewpoint> from, LookShader& shader, Looking& l,
+                         const Progress& progress) {
   const gpu::Device& device = l.commands.device();
   auto* sent = reinterpret_cast<DeviceViewpoint*>(l.from_sent.mapped);
-  for (size_t i = 0; i < from.size(); ++i) sent[i] = device_viewpoint(from[i], diagonal_m);
+  for (size_t i = 0; i < from.size(); ++i) sent[i] = device_viewpoint(from[i]);
   LUXEL_TRY_STATUS(
       gpu::copy_bytes(l.commands, l.from_sent, l.from, from.size() * sizeof(DeviceViewpoint)));
   LUXEL_TRY_STATUS(l.commands.run([&](VkCommandBuffer c) {
@@ -304,13 +302,11 @@ class DeviceLook final : public hemicube::LookDevice {
     Looking l{*commands_, elements, std::min(tiles * kTile, std::max(from.size(), size_t(1)))};
     LUXEL_TRY_STATUS(prepare(senders, *tracer_, pixels, l));
     progress.begin("hemicubes", from.size());
-    const float diagonal_m = scene::world_bounds(senders.scene).diagonal();
     hemicube::LookSeconds out;
     for (size_t first = 0; first < from.size(); first += l.at_a_time) {
       LUXEL_TRY_STATUS(stopped(progress));
       const size_t count = std::min(l.at_a_time, from.size() - first);
-      LUXEL_TRY(const double seconds,
-                look_from(from.subspan(first, count), diagonal_m, shader_, l, progress));
+      LUXEL_TRY(const double seconds, look_from(from.subspan(first, count), shader_, l, progress));
       out.visibility += seconds;
       LUXEL_TRY_STATUS(hand_on(l, first, count, done, progress));
     }

@@ -114,7 +114,7 @@ TEST_F(HemicubesOnDevice, HaveTheFactorsOfACube) {
   const hemicube::Receivers receivers = make_receivers(scene, mesh, ElementKind::triangle);
   const auto tracer = trace::RayTracer::build(scene);
   ASSERT_TRUE(tracer);
-  const hemicube::Viewpoint middle{{0.5f, 0, 0.5f}, {0, 1, 0}, {0, 1, 0}};
+  const hemicube::Viewpoint middle{{0.5f, 1e-6f, 0.5f}, {0, 1, 0}, {0, 1, 0}};
   const light::Surroundings around = light::surroundings_of(scene);
   std::vector<float> share(receivers.size());
   Progress progress;

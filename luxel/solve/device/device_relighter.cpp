@@ -65,8 +65,8 @@ struct DirectPush {
   trace::DeviceWorld world;
   VkDeviceAddress lights, places, light;
   uint32_t place_count, light_count;
-  float diagonal_m;
   uint32_t first_group = 0;
+  uint32_t unused = 0;
 };
 static_assert(sizeof(DirectPush) == 80);
 
@@ -92,7 +92,6 @@ struct DeviceRelighter::Impl {
   std::optional<trace::DeviceRayTracer> tracer{};
   RelightBuffers buffers{};
   gpu::Buffer probes{}, lights{}, probes_sent{};
-  float diagonal_m = 0;
   std::vector<Rgb> mean_emission{};  ///< B_e per material, as baked
   gpu::Pipeline direct{};
   gpu::PieceSize direct_piece{};  ///< of groups, where direct light is not part of the one buffer
@@ -179,8 +178,7 @@ DirectPush DeviceRelighter::Impl::direct_push(const matrix::RelightLights& from)
           .places = probes.address,
           .light = buffers.at_probe.address,
           .place_count = uint32_t(data.probe.size()),
-          .light_count = uint32_t(from.punctual.size()),
-          .diagonal_m = diagonal_m};
+          .light_count = uint32_t(from.punctual.size())};
 }
 
 /// Whether shadow rays are so many that they go to the device in pieces of their own.
@@ -253,7 +251,6 @@ Result<DeviceRelighter> DeviceRelighter::make(const gpu::Device& device,
   std::unique_ptr<Impl> impl(new Impl{device, data, matrix::scene_of(data.occluders)});
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(device));
   impl->commands.emplace(std::move(commands));
-  impl->diagonal_m = scene::world_bounds(impl->occluders).diagonal();
   impl->mean_emission = matrix::mean_emission_of(data);
   LUXEL_TRY(impl->buffers, upload_relight_data(*impl->commands, data));
   LUXEL_TRY(trace::DeviceRayTracer tracer, trace::DeviceRayTracer::build(device, impl->occluders));

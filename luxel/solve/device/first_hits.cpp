@@ -20,7 +20,7 @@ static_assert(sizeof(HitsPush) <= 128);
 }  // namespace
 
 Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
-                                     const transport::Elements& elements, float diagonal_m,
+                                     const transport::Elements& elements,
                                      const FirstHitsParams& params) {
   const size_t n = elements.size(), tiles = (n + kTogether - 1) / kTogether;
   LUXEL_CHECK(n > 0 && params.samples > 0);
@@ -28,7 +28,7 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
   const gpu::Device& device = tracer.device();
   FirstHits out;
   out.element_count = n, out.params = params;
-  LUXEL_TRY(out.elements, upload_elements(commands, elements, diagonal_m));
+  LUXEL_TRY(out.elements, upload_elements(commands, elements));
   LUXEL_TRY(out.hits,
             gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(trace::DeviceHit),
                              gpu::Access::device, "the buffer of hits"));

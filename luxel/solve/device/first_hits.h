@@ -30,7 +30,7 @@ struct FirstHits {
 /// Sends elements to the device and makes room for what their rays will meet. Some elements, and
 /// fewer than 2^31 rays in all. Errors: no memory, the device is lost.
 Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
-                                     const transport::Elements& elements, float diagonal_m,
+                                     const transport::Elements& elements,
                                      const FirstHitsParams& params);
 
 /// Makes the rays and traces them: element i sends the rays that gather sends from it, with

@@ -47,7 +47,6 @@ using FirstHitsOnDevice = gpu::testing::OnDevice;
 TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
   const scene::Scene scene = scene::inward_sphere(10, 4, {0.5f, 0.5f, 0.5f}, {});
   const transport::Elements elements = elements_on_sphere(350);  // no multiple of 64
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   const auto embree = trace::RayTracer::build(scene);
   using trace::HierarchyKind;
   for (const HierarchyKind kind :
@@ -57,7 +56,7 @@ TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
     ASSERT_TRUE(tracer);
     for (const uint32_t samples : {32u, 64u, 100u, 128u}) {
       const uint64_t seed = 5;
-      auto hits = prepare_first_hits(*tracer, *commands_, elements, diagonal_m, {samples, seed});
+      auto hits = prepare_first_hits(*tracer, *commands_, elements, {samples, seed});
       ASSERT_TRUE(hits) << hits.error().message;
       ASSERT_TRUE(trace_first_hits(*tracer, *commands_, *hits));
       const auto values = gpu::downloaded<trace::DeviceHit>(
@@ -65,9 +64,8 @@ TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
       ASSERT_TRUE(values) << values.error().message;
       for (size_t i = 0; i < elements.size(); ++i) {
         std::vector<trace::Ray> rays(samples);
-        gather::element_rays(
-            trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-            elements.normal[i], elements.geometric_normal[i], gather::seed_of_rays(seed, i), rays);
+        gather::element_rays(elements.position[i], elements.normal[i], elements.geometric_normal[i],
+                             gather::seed_of_rays(seed, i), rays);
         const std::vector<Vec3> places = met_places(scene, *hits, *values, i);
         for (size_t k = 0; k < samples; ++k) {
           const trace::Hit expected = embree->closest_hit(rays[k]);

@@ -311,7 +311,7 @@ Result<LandedRays> begin_rays(const DeviceScene& scene, const gather::TraceParam
   const gather::SceneOfRays rays(in, params);
   LandedRays out;
   out.element_count = in.elements.size();
-  LUXEL_TRY(out.elements, upload_elements(commands, in.elements, rays.diagonal_m()));
+  LUXEL_TRY(out.elements, upload_elements(commands, in.elements));
   LUXEL_TRY(out.landings,
             gpu::uploaded_or_one(commands, landings_of(rays.rays()), "the buffer of the lightmap"));
   std::span<const uint64_t> mixed;

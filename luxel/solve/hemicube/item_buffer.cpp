@@ -33,8 +33,6 @@ Result<ItemBuffer> item_buffer(const Senders& senders, const Viewpoint& from, in
                  std::move(cube.delta_factor)};
   const Frame frame = frame_of_cube(from.normal);
   for (Vec3& direction : out.direction) direction = frame.to_world(direction);
-  const Vec3 origin = trace::offset_origin(from.position, from.geometric_normal,
-                                           scene::world_bounds(senders.scene).diagonal());
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
   std::vector<size_t> pixels;  // of the rays
@@ -45,7 +43,7 @@ Result<ItemBuffer> item_buffer(const Senders& senders, const Viewpoint& from, in
     const size_t end = std::min(first + kRaysAtATime, out.items.size());
     for (size_t i = first; i < end; ++i) {
       if (dot(out.direction[i], from.geometric_normal) <= 0) continue;
-      rays.push_back({origin, 0, out.direction[i], INFINITY});
+      rays.push_back({from.position, 0, out.direction[i], INFINITY});
       pixels.push_back(i);
     }
     hits.resize(rays.size());

@@ -64,9 +64,7 @@ struct Buffers {
 class Looker {
  public:
   Looker(const Senders& senders, std::vector<Pixel> pixels)
-      : s_(senders),
-        pixels_(std::move(pixels)),
-        diagonal_m_(scene::world_bounds(senders.scene).diagonal()) {
+      : s_(senders), pixels_(std::move(pixels)) {
     for (const scene::Material& m : s_.scene.materials)
       kinds_.push_back(
           {scene::reflects_from_behind(m), max_component(m.emission) > 0 && s_.emission_by_pixels});
@@ -79,12 +77,11 @@ class Looker {
     buffers.view.emitted = {};
     buffers.view.back = buffers.view.two_sided_back = 0;
     const Frame frame = frame_of_cube(from.normal);
-    const Vec3 origin = trace::offset_origin(from.position, from.geometric_normal, diagonal_m_);
     for (size_t first = 0; first < pixels_.size(); first += kBatch) {
       if (progress.cancelled()) return false;
       const auto start = Clock::now();
       aim(std::span(pixels_).subspan(first, std::min(kBatch, pixels_.size() - first)), frame,
-          origin, from.geometric_normal, buffers);
+          from.position, from.geometric_normal, buffers);
       const auto aimed = Clock::now();
       s_.tracer.closest_hits(buffers.rays, buffers.hits, trace::Packets::bundles);
       const auto traced = Clock::now();
@@ -144,7 +141,6 @@ class Looker {
   const Senders& s_;
   std::vector<Pixel> pixels_;
   std::vector<SurfaceKind> kinds_;
-  float diagonal_m_;
 };
 
 }  // namespace

@@ -97,7 +97,7 @@ void place_vertices(const scene::Scene& scene, const Mesh& mesh, std::span<const
   parallel_for(mesh.vertices.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const transport::SmoothPoint at = transport::smooth_point(scene, mesh.vertices[i]);
-      e.position[i] = at.position, e.normal[i] = at.normal;
+      e.position[i] = at.start, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
       const Fan& fan = fans[i];
       if (!fan.at_rim || !std::isfinite(fan.shortest_edge_m)) continue;
@@ -113,7 +113,7 @@ void place_triangles(const scene::Scene& scene, const Mesh& mesh, std::span<cons
     for (size_t i = begin; i < end; ++i) {
       const scene::SurfacePoint centroid = scene_point(mesh.nodes[leaves[i]], {1 / 3.0f, 1 / 3.0f});
       const transport::SmoothPoint at = transport::smooth_point(scene, centroid);
-      e.position[i] = at.position, e.normal[i] = at.normal;
+      e.position[i] = at.start, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
     }
   });

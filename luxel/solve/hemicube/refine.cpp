@@ -196,8 +196,7 @@ Result<Sight> look_from(const SendingScene& around, const transport::Elements& e
   for (size_t k = 0; k < elements.size(); ++k) direct.irradiance[k] += rows.emitted[k];
   const float size_m =
       transport::size_for_covers(around.scene, around.tracer, solution.element_size_m);
-  const std::vector<float> open =
-      transport::open_shares(around.scene, around.tracer, elements, size_m);
+  const std::vector<float> open = transport::open_shares(around.tracer, elements, size_m);
   for (const float share : open) rows.covered.push_back(share < 1);
   solution.rays += direct.rays + pixels_of(params.resolution) * elements.size();
   solution.seconds.visibility += rows.seconds.visibility;

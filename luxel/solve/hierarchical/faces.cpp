@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/viewfactor/merge_polygons.h"
 #include "luxel/viewfactor/surfaces.h"
 
@@ -27,6 +28,10 @@ Face make_face(const scene::Scene& scene, PolygonView corners, uint32_t instance
                bool curved) {
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
   Face face{{corners.begin(), corners.end()}, viewfactor::plane_of(corners)};
+  Box3 box;
+  for (const DVec3& corner : corners) box.extend(to_float(corner));
+  face.size_m = scene::size_for_rounding(scene.instances[instance].world_from_object,
+                                         box.upper - box.lower, to_float(face.plane.normal));
   face.instance = instance, face.triangle = triangle, face.curved = curved;
   face.material = mesh.triangle_material[triangle];
   const scene::Material& material = scene.materials[face.material];
@@ -90,7 +95,7 @@ bool has_holes(const Faces& faces, std::span<const uint32_t> some) {
 
 Result<Faces> make_faces(const scene::Scene& scene, Progress& progress) {
   Faces out;
-  out.slack_m = viewfactor::rounding_m(scene);
+  out.slack_m = viewfactor::corner_rounding_m(scene);
   out.first_triangle = scene::first_triangles(scene);
   out.face_of_triangle.assign(out.first_triangle.back(), kNone);
   progress.begin("join polygons", out.first_triangle.back());

@@ -22,6 +22,7 @@ inline constexpr uint32_t kNone = scene::kNone;
 struct Face {
   Polygon corners;  ///< counter-clockwise from the front [m]
   Plane plane;
+  float size_m = 0;  ///< scene::size_for_rounding()
   uint32_t instance = 0, material = 0;
   uint32_t triangle = 0;   ///< of the mesh: one of them
   bool two_sided = false;  ///< its back shows the light of its front

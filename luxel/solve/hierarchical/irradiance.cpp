@@ -35,7 +35,7 @@ Result<std::vector<Rgb>> from_punctual_lights(const scene::Scene& scene,
     return std::vector<Rgb>(receivers.size());
   transport::Elements points;
   for (const Receiver& r : receivers) {
-    points.position.push_back(to_float(r.position));
+    points.position.push_back(r.start());
     points.normal.push_back(to_float(r.normal));
     points.geometric_normal.push_back(to_float(r.geometric_normal));
     points.reflectance.push_back({});
@@ -69,11 +69,10 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const RaySources sources = ray_sources(s);
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
-  const SkyScene sky{scene, unlinked.lights.around, tracer, s.diagonal_m};
+  const SkyScene sky{scene, unlinked.lights.around, tracer};
   const auto sky_at = [&](const Receiver& r, SkyRays& rays) {
-    return soft_sky_at(sky,
-                       {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)},
-                       sky_rays, rays);
+    return soft_sky_at(sky, {r.start(), to_float(r.normal), to_float(r.geometric_normal)}, sky_rays,
+                       rays);
   };
   // Each receiver gathers from all faces.
   progress.begin("irradiance", receivers.size());
@@ -146,10 +145,11 @@ Backprojection backproject(const Solution& s, const Receiver& receiver, uint32_t
 Receiver receiver_at(const Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
                      uint32_t face, DVec3 place) {
   const Face& f = s.faces.faces[face];
-  if (!f.curved) return {place, f.plane.normal, f.plane.normal, face};
+  if (!f.curved) return {place, f.plane.normal, f.plane.normal, face, f.size_m};
   const transport::SmoothPoint p =
       transport::smooth_point(scene, surface_point(scene, s.faces, tracer, face, place));
-  return {to_double(p.position), to_double(p.normal), to_double(p.geometric_normal), face};
+  return {to_double(p.position), to_double(p.normal), to_double(p.geometric_normal), face,
+          f.size_m};
 }
 
 }  // namespace luxel::hierarchical

@@ -2,17 +2,24 @@
 // [Hardt96, chapter 6]
 #pragma once
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/hierarchical/solve.h"
 #include "luxel/solve/hierarchical/unlinked_lights.h"
 
 namespace luxel::hierarchical {
 
-/// A point of the front side of a face, just above it.
+/// A point of the front side of a face.
 struct Receiver {
   DVec3 position;
   DVec3 normal;            ///< for cosines, unit
   DVec3 geometric_normal;  ///< no light comes from below the plane it spans
   uint32_t face = kNone;   ///< does not block
+  float size_m = 0;        ///< Face::size_m
+
+  /// Where rays start.
+  Vec3 start() const {
+    return scene::off_surface(to_float(position), to_float(geometric_normal), size_m);
+  }
 };
 
 struct PointParams {

@@ -40,7 +40,7 @@ TEST(ExactIrradiance, OfAUnitSourceIsThePointsFormFactor) {
     if (row[1] != "point") continue;
     const auto s = solved(unit_source(row));
     const auto place = testing_support::parse_polygon(row[2]);
-    const Receiver at{place[0], normalize(place[1]), normalize(place[1])};
+    const Receiver at{place[0], normalize(place[1]), normalize(place[1]), kNone, 1};
     const double wanted = std::stod(row[5]);
     // Corners are floats: 6e-8 of their size.
     EXPECT_NEAR(light_at(*s, {&at, 1}, 1e-9)[0].x, wanted, 1e-6 * wanted) << row[0];
@@ -77,7 +77,7 @@ double mean_light(const Solved& s, const Polygon& a, int cells, int half) {
           const bool triangle = a.size() == 3;
           receivers.push_back(
               {a[0] + e1 * (triangle ? u * (1 - v) : u) + e2 * (triangle ? u * v : v), plane.normal,
-               plane.normal});
+               plane.normal, kNone, 1});
           weight.push_back(wx * wy / (cells * cells) * (triangle ? 2 * u : 1));
         }
   const std::vector<Rgb> e = light_at(s, receivers, 1e-9);
@@ -134,8 +134,7 @@ struct Estimate {
 Estimate estimate(const Solved& s, const Receiver& at, uint32_t samples) {
   const Solution& solution = s.solution;
   const auto frame = frame_around(to_float(at.normal));
-  const Vec3 from =
-      trace::offset_origin(to_float(at.position), to_float(at.normal), solution.diagonal_m);
+  const Vec3 from = at.start();
   RandomStream random{hash64(uint64_t(1e6 * at.position.x), uint64_t(1e6 * at.position.z))};
   double sum = 0, sum2 = 0;
   for (uint32_t k = 0; k < samples; ++k) {
@@ -198,7 +197,7 @@ TEST(ExactIrradiance, CountsManyLamps) {
   scene::PunctualLight lamp;
   lamp.position = {0, 2, 0}, lamp.intensity = {1, 2, 3};
   scene.lights.assign(300, lamp);
-  const Receiver at{{0, 0, 0}, {0, 1, 0}, {0, 1, 0}};
+  const Receiver at{{0, 0, 0}, {0, 1, 0}, {0, 1, 0}, kNone, 1};
   const auto s = solved(scene);
   // 64 of them stand for all, evenly drawn: they may count one too many or too few.
   EXPECT_NEAR(light_at(*s, {&at, 1}, 1e-6)[0].y, 300 * 2 / 4.0, 150 / 64.0);

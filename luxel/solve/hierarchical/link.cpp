@@ -5,6 +5,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/viewfactor/point_form_factor.h"
 #include "luxel/viewfactor/polygon_form_factor.h"
 
@@ -72,20 +73,20 @@ double corner_weight(uint32_t corners, uint32_t a, uint32_t k) {
   return apart == 0 ? near * near : apart == 2 ? far * far : near * far;
 }
 
-Vec3 lifted(const Exchange& x, DVec3 p, DVec3 normal) {
-  return trace::offset_origin(to_float(p), to_float(normal), x.diagonal_m);
+Vec3 lifted(const Face& face, DVec3 p, DVec3 side) {
+  return scene::off_surface(to_float(p), to_float(side), face.size_m);
 }
 
 /// The share of pairs of points on two elements that see each other.
 float seen_by_rays(const Exchange& x, const Element& r, const Element& s, uint64_t seed) {
-  const DVec3 from_normal = x.faces.faces[r.face].plane.normal;
-  const Plane& to_plane = x.faces.faces[s.face].plane;
+  const Face &from_face = x.faces.faces[r.face], &to_face = x.faces.faces[s.face];
   std::array<trace::Ray, kLinkRays> rays;
   for (uint32_t k = 0; k < kLinkRays; ++k) {
     const DVec3 a = point_in(r, sobol_owen_2d(k, hash64(seed, 1)));
     const DVec3 b = point_in(s, sobol_owen_2d(k, hash64(seed, 2)));
-    const DVec3 side = to_plane.height(a) >= 0 ? to_plane.normal : -to_plane.normal;
-    const Vec3 from = lifted(x, a, from_normal), to = lifted(x, b, side);
+    const DVec3 normal = to_face.plane.normal;
+    const Vec3 from = lifted(from_face, a, from_face.plane.normal),
+               to = lifted(to_face, b, to_face.plane.height(a) >= 0 ? normal : -normal);
     rays[k] = {from, 0, to - from, 1};
   }
   std::array<uint8_t, kLinkRays> blocked{};
@@ -244,8 +245,8 @@ std::optional<Vec3> place_facing(const Exchange& x, uint32_t id, DVec3 other,
     const Element& e = x.tree.element(at);
     const Face& face = x.faces.faces[e.face];
     const DVec3 place = point_in(e, random.next2());
-    if (face.plane.height(other) > 0) return lifted(x, place, face.plane.normal);
-    if (face.two_sided) return lifted(x, place, -face.plane.normal);
+    if (face.plane.height(other) > 0) return lifted(face, place, face.plane.normal);
+    if (face.two_sided) return lifted(face, place, -face.plane.normal);
   }
   return std::nullopt;
 }

@@ -42,7 +42,6 @@ struct Exchange {
   const Tree& tree;
   const Blockers& blockers;
   const trace::RayTracer& tracer;
-  float diagonal_m = 0;
   double unit_area_m2 = 1;  ///< errors count in full on receivers of this size
   Basis basis = Basis::linear;
   bool light_in_gaps = false;  ///< Solution::light_in_gaps

@@ -6,6 +6,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/hierarchical/surface.h"
 #include "luxel/transport/covers.h"
 
@@ -198,10 +199,11 @@ constexpr double kInwards = 0.1;
 /// Whether something much closer than the element covers its centre and its corners.
 bool is_covered(const Exchange& x, const Element& e) {
   if (x.light_in_gaps) return false;
-  const Vec3 normal = to_float(x.faces.faces[e.face].plane.normal);
+  const Face& face = x.faces.faces[e.face];
+  const Vec3 normal = to_float(face.plane.normal);
   const auto size_m = float(std::sqrt(e.area_m2));
   const auto covered_at = [&](DVec3 place) {
-    const Vec3 from = trace::offset_origin(to_float(place), normal, x.diagonal_m);
+    const Vec3 from = scene::off_surface(to_float(place), normal, face.size_m);
     return transport::open_share(x.tracer, from, normal, size_m) < 1;
   };
   if (!covered_at(e.centre)) return false;

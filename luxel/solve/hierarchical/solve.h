@@ -44,7 +44,7 @@ struct Solution {
 
   /// What form factors between elements are computed from. It refers to this solution.
   Exchange exchange(const trace::RayTracer& tracer) const {
-    return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2, basis, light_in_gaps};
+    return {faces, tree, blockers, tracer, unit_area_m2, basis, light_in_gaps};
   }
 };
 

@@ -45,9 +45,8 @@ double SourceSampler::add_shadow_ray(const Receiver& from, const SourcePoint& pl
   if (dot(d, from.geometric_normal) <= 0 || (facing <= 0 && !face.two_sided) || !(kernel > 0))
     return 0;
   const DVec3 side = facing > 0 ? face.plane.normal : -face.plane.normal;
-  const Vec3 begin =
-      trace::offset_origin(to_float(from.position), to_float(from.geometric_normal), s_.diagonal_m);
-  const Vec3 end = trace::offset_origin(to_float(place.position), to_float(side), s_.diagonal_m);
+  const Vec3 begin = from.start();
+  const Vec3 end = scene::off_surface(to_float(place.position), to_float(side), face.size_m);
   rays_.push_back({begin, 0, end - begin, 1});
   return kernel;
 }

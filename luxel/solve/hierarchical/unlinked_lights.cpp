@@ -7,6 +7,7 @@
 #include "luxel/base/warp.h"
 #include "luxel/light/direct_light.h"
 #include "luxel/light/punctual_tree.h"
+#include "luxel/scene/off_surface.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -93,16 +94,17 @@ SkyFit fit_of(const Probe& probe, std::span<const Rgb> light) {
 
 void add_points(const Element& e, const Faces& faces, const Probe& probe,
                 transport::Elements& out) {
-  const Vec3 normal = to_float(faces.faces[e.face].plane.normal);
+  const Face& face = faces.faces[e.face];
+  const Vec3 normal = to_float(face.plane.normal);
   for (const auto& [s, t] : probe.at) {
-    out.position.push_back(to_float(linear_at(e.corner, e.corners, s, t)));
+    const Vec3 place = to_float(linear_at(e.corner, e.corners, s, t));
+    out.position.push_back(scene::off_surface(place, normal, face.size_m));
     out.normal.push_back(normal), out.geometric_normal.push_back(normal);
     out.reflectance.push_back({});
   }
 }
 
-void turn_rays(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count,
-               SkyRays& rays) {
+void turn_rays(const SkyScene& sky, const light::Receiver& point, uint32_t count, SkyRays& rays) {
   rays.normal = point.normal, rays.geometric_normal = point.geometric_normal, rays.count = count;
   rays.direction.clear();
   const Frame frame = frame_around(point.normal);
@@ -118,7 +120,7 @@ std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
                            const UnlinkedLights& unlinked, const transport::Elements& points) {
   std::vector<Rgb> out(points.size());
   if (!unlinked.has_sky) return out;
-  const SkyScene sky{scene, unlinked.lights.around, x.tracer, x.diagonal_m};
+  const SkyScene sky{scene, unlinked.lights.around, x.tracer};
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
     SkyRays rays;
     for (size_t i = begin; i < end; ++i)
@@ -130,14 +132,12 @@ std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
 
 }  // namespace
 
-Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count,
-                SkyRays& rays) {
+Rgb soft_sky_at(const SkyScene& sky, const light::Receiver& point, uint32_t count, SkyRays& rays) {
   if (rays.count != count || rays.normal != point.normal ||
       rays.geometric_normal != point.geometric_normal)
     turn_rays(sky, point, count, rays);
-  const Vec3 from = trace::offset_origin(point.position, point.geometric_normal, sky.diagonal_m);
   rays.rays.clear();
-  for (const Vec3 d : rays.direction) rays.rays.push_back({from, 0, d, INFINITY});
+  for (const Vec3 d : rays.direction) rays.rays.push_back({point.position, 0, d, INFINITY});
   rays.blocked.resize(rays.rays.size());
   sky.tracer.occluded(rays.rays, rays.blocked);
   // Summed in double: a sky of one radiance gives its share of the rays, whatever their order.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "luxel/light/lights.h"
+#include "luxel/light/shadow_rays.h"
 #include "luxel/solve/hierarchical/refine.h"
 #include "luxel/transport/elements.h"
 
@@ -21,7 +22,6 @@ struct SkyScene {
   const scene::Scene& scene;
   const light::Surroundings& around;
   const trace::RayTracer& tracer;
-  float diagonal_m = 0;  ///< of the scene's box
 };
 /// Cosine-distributed rays towards the sky, the same for all points with these normals, and what
 /// the sky sends along them.
@@ -37,8 +37,7 @@ struct SkyRays {
 /// the sum of the radiance of those that leave the scene. All points send theirs in the same
 /// directions of their frames, so that E has steps but no noise. `rays` are those of the last call,
 /// which stay where the normals do.
-Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count,
-                SkyRays& rays);
+Rgb soft_sky_at(const SkyScene& sky, const light::Receiver& point, uint32_t count, SkyRays& rays);
 /// The largest radiance of the soft surroundings [W/(sr m^2)]: E of the sky is at most pi times it.
 float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
 

@@ -27,8 +27,7 @@ struct RayBuffers {
 
 /// Rays from a patch's points in turn, in the order of their directions, so that neighbours are
 /// alike: each of the points takes its share of every direction.
-void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal_m,
-               RayBuffers& buffers) {
+void fill_rays(std::span<const PatchPoint> points, uint64_t seed, RayBuffers& buffers) {
   const size_t count = buffers.ray.size();
   sobol_owen_2d_points(seed, buffers.u, buffers.v);
   const auto cell = [&](size_t i) {
@@ -42,8 +41,7 @@ void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal
     const PatchPoint& p = points[i % points.size()];
     const Vec3 d =
         frame_around(p.normal).to_world(cosine_hemisphere_sample({buffers.u[i], buffers.v[i]}));
-    buffers.ray[place[cell(i)]++] = {trace::offset_origin(p.position, p.normal, diagonal_m), 0, d,
-                                     INFINITY};
+    buffers.ray[place[cell(i)]++] = {p.position, 0, d, INFINITY};
   }
 }
 
@@ -225,8 +223,6 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
   LUXEL_CHECK(params.rays_per_patch >= 1);
   const Patches& patches = patched.patches;
   const size_t rays = size_t(params.rays_per_patch);
-  const Box3 bounds = scene::world_bounds(scene);
-  const float diagonal_m = length(bounds.upper - bounds.lower);
   TracedFactors out;
   out.sky.resize(patches.size());
   std::vector<Row> rows(patches.size());
@@ -241,7 +237,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
     RayBuffers buffers(rays);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       // Rays from the points of the patch, and the patches that they meet.
-      fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, buffers);
+      fill_rays(patches.points_of(i), hash64(params.seed, i), buffers);
       tracer.closest_hits(buffers.ray, buffers.hit);
       buffers.met.clear();
       size_t escaped = 0;

@@ -23,19 +23,17 @@ struct Arriving {
   trace::Ray ray;
 };
 
-Arriving arriving_at(const LitPoints& points, size_t i, const scene::PunctualLight& light,
-                     float diagonal_m) {
+Arriving arriving_at(const LitPoints& points, size_t i, const scene::PunctualLight& light) {
   const light::PunctualIncidence in = light::incidence_at(light, {}, points.position[i]);
   const float cosine = dot(points.normal[i], in.towards);
   if (!(cosine > 0) || !(dot(points.geometric_normal[i], in.towards) > 0)) return {};
-  const Vec3 origin =
-      trace::offset_origin(points.position[i], points.geometric_normal[i], diagonal_m);
-  return {in.irradiance * cosine, {origin, 0, in.towards, in.distance_m * kMostOfTheWay}};
+  return {in.irradiance * cosine,
+          {points.position[i], 0, in.towards, in.distance_m * kMostOfTheWay}};
 }
 
 /// Adds one light's irradiance to the points [begin, end), at most kBatch.
 void add_light(const LitPoints& points, const scene::PunctualLight& light,
-               const trace::RayTracer& tracer, float diagonal_m, size_t begin, size_t end,
+               const trace::RayTracer& tracer, size_t begin, size_t end,
                std::span<Rgb> irradiance) {
   std::array<trace::Ray, kBatch> ray;
   std::array<uint32_t, kBatch> place;
@@ -43,7 +41,7 @@ void add_light(const LitPoints& points, const scene::PunctualLight& light,
   std::array<uint8_t, kBatch> blocked;
   size_t count = 0;
   for (size_t i = begin; i < end; ++i) {
-    const Arriving a = arriving_at(points, i, light, diagonal_m);
+    const Arriving a = arriving_at(points, i, light);
     if (!(max_component(a.irradiance) > 0)) continue;
     ray[count] = a.ray, place[count] = uint32_t(i), light_of_ray[count] = a.irradiance;
     ++count;
@@ -56,11 +54,10 @@ void add_light(const LitPoints& points, const scene::PunctualLight& light,
 }  // namespace
 
 Rgb live_light_at(const LitPoints& points, size_t place,
-                  std::span<const scene::PunctualLight> lights, const trace::RayTracer& tracer,
-                  float scene_diagonal_m) {
+                  std::span<const scene::PunctualLight> lights, const trace::RayTracer& tracer) {
   Rgb sum{};
   for (const scene::PunctualLight& light : lights) {
-    const Arriving a = arriving_at(points, place, light, scene_diagonal_m);
+    const Arriving a = arriving_at(points, place, light);
     uint8_t blocked = 0;
     if (!(max_component(a.irradiance) > 0)) continue;
     tracer.occluded({&a.ray, 1}, {&blocked, 1});
@@ -70,13 +67,13 @@ Rgb live_light_at(const LitPoints& points, size_t place,
 }
 
 void live_light(const LitPoints& points, std::span<const scene::PunctualLight> lights,
-                const trace::RayTracer& tracer, float scene_diagonal_m, std::span<Rgb> irradiance) {
+                const trace::RayTracer& tracer, std::span<Rgb> irradiance) {
   LUXEL_CHECK(irradiance.size() == points.size() && points.normal.size() == points.size());
   const auto batch = [&](size_t begin, size_t end) {
     std::fill(irradiance.begin() + std::ptrdiff_t(begin), irradiance.begin() + std::ptrdiff_t(end),
               Rgb{});
     for (const scene::PunctualLight& light : lights)
-      add_light(points, light, tracer, scene_diagonal_m, begin, end, irradiance);
+      add_light(points, light, tracer, begin, end, irradiance);
   };
   parallel_for(points.size(), kBatch, std::ref(batch));
 }

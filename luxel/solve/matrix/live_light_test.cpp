@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/base/parallel.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/matrix/matrix_test_support.h"
 
 namespace luxel::matrix {
@@ -18,12 +19,9 @@ constexpr double kRounding = 2e-6;
 struct LiveStage {
   scene::Scene scene;
   trace::RayTracer tracer;
-  float diagonal_m;
 
   explicit LiveStage(scene::Scene s)
-      : scene(std::move(s)),
-        tracer(*trace::RayTracer::build(scene)),
-        diagonal_m(scene::world_bounds(scene).diagonal()) {}
+      : scene(std::move(s)), tracer(*trace::RayTracer::build(scene)) {}
 };
 
 /// What lamps shine on.
@@ -41,14 +39,15 @@ Ground plate_places() {
   Ground out;
   for (int j = 0; j < 16; ++j)
     for (int i = 0; i < 16; ++i)
-      out.add({(float(i) + 0.5f) / 16, 0, (float(j) + 0.5f) / 16}, {0, 1, 0});
+      out.add(scene::off_surface({(float(i) + 0.5f) / 16, 0, (float(j) + 0.5f) / 16}, {0, 1, 0}, 0),
+              {0, 1, 0});
   return out;
 }
 
 std::vector<Rgb> light(const LiveStage& stage, const Ground& ground,
                        const std::vector<scene::PunctualLight>& lamps) {
   std::vector<Rgb> out(ground.position.size(), {7, 7, 7});  // what was there is forgotten
-  live_light(ground.places(), lamps, stage.tracer, stage.diagonal_m, out);
+  live_light(ground.places(), lamps, stage.tracer, out);
   return out;
 }
 
@@ -81,7 +80,8 @@ TEST(LiveLight, OfAPointIsTheInverseSquareTimesTheCosine) {
   const std::vector<Rgb> e = light(LiveStage(plate()), ground, {lamp});
   for (size_t i = 0; i < e.size(); ++i) {
     const double d2 = squared(lamp.position - ground.position[i]);
-    expect_share(e[i], double(lamp.position.y) / std::sqrt(d2) / d2, lamp, i);
+    const auto height = double(lamp.position.y - ground.position[i].y);
+    expect_share(e[i], height / std::sqrt(d2) / d2, lamp, i);
   }
 }
 
@@ -112,7 +112,8 @@ TEST(LiveLight, OfASpotStaysInItsCone) {
   const std::vector<Rgb> e = light(LiveStage(plate()), ground, {lamp});
   std::array<int, 3> met{};
   for (size_t i = 0; i < e.size(); ++i) {
-    const double d2 = squared(lamp.position - ground.position[i]), cosine = 1 / std::sqrt(d2);
+    const double d2 = squared(lamp.position - ground.position[i]);
+    const double cosine = double(lamp.position.y - ground.position[i].y) / std::sqrt(d2);
     const double edge = (cosine - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4));
     const double t = std::clamp(edge, 0.0, 1.0);
     ++met[t == 0 ? 0 : t == 1 ? 2 : 1];
@@ -174,9 +175,10 @@ TEST(LiveLight, ALampThatTouchesAWallIsNotHiddenByIt) {
   // Nothing is in the way inside a convex solid, wherever on its 320 faces lamp and place are.
   const LiveStage stage(scene::inward_sphere(1, 2, {0.5f, 0.5f, 0.5f}, {}));
   Ground ground;
-  for (uint32_t t = 0; t < stage.scene.meshes[0].triangles.size(); ++t)
-    ground.add(scene::world_position(stage.scene, {0, t, {1.0f / 3, 1.0f / 3}}),
-               scene::front_normal(stage.scene, 0, t));
+  for (uint32_t t = 0; t < stage.scene.meshes[0].triangles.size(); ++t) {
+    const Vec3 n = scene::front_normal(stage.scene, 0, t);
+    ground.add(scene::off_surface(stage.scene, {0, t, {1.0f / 3, 1.0f / 3}}, n), n);
+  }
   for (size_t from = 0; from < ground.position.size(); from += 7) {
     const auto lamp = live_point_at(ground.position[from]);
     const std::vector<Rgb> e = light(stage, ground, {lamp});
@@ -219,7 +221,7 @@ struct LitRoom {
   }
   std::vector<Rgb> light() const {
     std::vector<Rgb> out(ground.position.size());
-    live_light(ground.places(), lamps, cut.tracer, 1, out);
+    live_light(ground.places(), lamps, cut.tracer, out);
     return out;
   }
 };
@@ -229,7 +231,7 @@ TEST(LiveLight, OfOnePlaceIsThatOfAll) {
   const std::vector<Rgb> e = room.light();
   size_t lit = 0;
   for (size_t i = 0; i < e.size(); ++i) {
-    EXPECT_EQ(live_light_at(room.ground.places(), i, room.lamps, room.cut.tracer, 1), e[i]) << i;
+    EXPECT_EQ(live_light_at(room.ground.places(), i, room.lamps, room.cut.tracer), e[i]) << i;
     lit += max_component(e[i]) > 0;
   }
   EXPECT_GT(lit, e.size() / 4);

@@ -172,6 +172,25 @@ std::vector<std::byte> encode_lxr(const RelightData& data) {
   return std::move(writer.bytes);
 }
 
+namespace {
+
+/// Moves the places of files before 1.2, which lie on the surface, to where rays start: as far off
+/// as the programs that wrote them did.
+void lift_places(RelightData& data) {
+  Box3 bounds;
+  for (const Vec3& p : data.occluders.position) bounds.extend(p);
+  const float diagonal_m = bounds.diagonal();
+  const auto lift = [&](Vec3& p, Vec3 normal) {
+    p += normal * (0x1p-18f * std::max(max_component(max(p, -p)), diagonal_m));
+  };
+  for (PatchPoint& p : data.probe) lift(p.position, p.normal);
+  for (size_t i = 0; i < data.position.size(); ++i) lift(data.position[i], data.normal[i]);
+  Target& to = data.target;
+  for (size_t i = 0; i < to.position.size(); ++i) lift(to.position[i], to.geometric_normal[i]);
+}
+
+}  // namespace
+
 Result<RelightData> decode_lxr(std::span<const std::byte> bytes, const std::string& name) {
   LUXEL_TRY(const Header header, read_header(bytes, name));
   LUXEL_TRY(std::vector<Chunk> chunks, find_chunks(bytes, header, name));
@@ -187,6 +206,7 @@ Result<RelightData> decode_lxr(std::span<const std::byte> bytes, const std::stri
       return fault(name, "chunk '{}', byte {}: no such chunk is known in version {}.{}",
                    readable(chunk.tag), chunk.offset, header.major, header.minor);
   if (const Status right = check(data); !right) return fault(name, "{}", right.error().message);
+  if (header.minor < 2) lift_places(data);
   return data;
 }
 

@@ -9,8 +9,9 @@
 
 namespace luxel::matrix {
 
-/// Another major version cannot be read; a newer minor one has chunks that are skipped.
-inline constexpr uint16_t kLxrMajor = 1, kLxrMinor = 1;
+/// Another major version cannot be read; a newer minor one has chunks that are skipped. Places of
+/// files before 1.2 lie on the surface, where rays do not start: they are lifted on reading.
+inline constexpr uint16_t kLxrMajor = 1, kLxrMinor = 2;
 
 /// Equal data gives equal bytes. `data` satisfies check(); writing what does not is a broken
 /// contract.

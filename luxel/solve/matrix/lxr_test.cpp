@@ -220,12 +220,35 @@ TEST(Lxr, SkipsChunksOfANewerMinorVersion) {
   Bytes file = encode_lxr(small_data());
   testing::append_chunk(file, "NEWS", Bytes(24, std::byte(7)));
   testing::mend(file);
-  EXPECT_THAT(error_of(file), HasSubstr("chunk 'NEWS', byte"));  // nobody knows it in 1.1
-  testing::put_at(file, 10, uint16_t(2));
+  EXPECT_THAT(error_of(file), HasSubstr("chunk 'NEWS', byte"));  // nobody knows it in 1.2
+  testing::put_at(file, 10, uint16_t(3));
   testing::mend(file);
   const auto back = decode_lxr(file, "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   expect_same(*back, small_data());
+}
+
+/// What a file before 1.2 holds, which has its places on the surface: 2^-18 of a largest coordinate
+/// of 9, 3, and 3 at least below where they are then, and never of less than the occluders' box,
+/// whose diagonal is the root of 3.
+RelightData lifted(RelightData data) {
+  const auto lift = [](Vec3& p, Vec3 normal, float size) { p += normal * (0x1p-18f * size); };
+  for (size_t i = 0; i < data.position.size(); ++i)
+    lift(data.position[i], data.normal[i], std::max(std::sqrt(3.0f), float(i)));
+  for (size_t k = 0; k < data.probe.size(); ++k)
+    lift(data.probe[k].position, data.probe[k].normal, k == 3 ? 3.0f : 2.0f);
+  for (size_t k = 0; k < data.target.position.size(); ++k)
+    lift(data.target.position[k], data.target.geometric_normal[k], 3);
+  return data;
+}
+
+TEST(Lxr, LiftsThePlacesOfVersion11) {
+  Bytes file = encode_lxr(small_data());
+  testing::put_at(file, 10, uint16_t(1));
+  testing::mend(file);
+  const auto back = decode_lxr(file, "a.lxr");
+  ASSERT_TRUE(back) << back.error().message;
+  expect_same(*back, lifted(small_data()));
 }
 
 TEST(Lxr, ReadsVersion10) {
@@ -244,7 +267,7 @@ TEST(Lxr, ReadsVersion10) {
   const auto back = decode_lxr(file, "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   data.glow = {}, data.usual_codec_error = data.baked_error = data.lamp_error = 0;
-  expect_same(*back, data);
+  expect_same(*back, lifted(std::move(data)));
 }
 
 TEST(Lxr, NeedsEachChunkOnce) {

@@ -59,7 +59,7 @@ inline void append_chunk(Bytes& file, std::string_view tag, const Bytes& content
 inline Bytes forged(const RelightData& data) {
   Bytes file(32);
   std::memcpy(file.data(), "\x89LXR\r\n\x1a\n", 8);
-  put_at(file, 8, uint16_t(1)), put_at(file, 10, uint16_t(1));
+  put_at(file, 8, uint16_t(1)), put_at(file, 10, uint16_t(2));
   for_each_chunk(data, [&](std::string_view tag, int, const auto& write_fields) {
     Writer writer;
     write_fields(writer);

@@ -56,8 +56,7 @@ uint64_t voxel_of(const VoxelGrid& grid, Vec3 position) {
 }
 
 float open_share(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid) {
-  const Vec3 from = trace::offset_origin(p.position, p.normal, grid.diagonal_m);
-  return transport::open_share(tracer, from, p.normal, grid.cover_m);
+  return transport::open_share(tracer, p.position, p.normal, grid.cover_m);
 }
 
 bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,

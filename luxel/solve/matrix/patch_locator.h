@@ -16,16 +16,15 @@ inline constexpr float kSameDirection = 0.8f;
 
 /// A place on a patch.
 struct PatchPoint {
-  Vec3 position;  ///< [m]
+  Vec3 position;  ///< [m], off the surface by what rounding may do (luxel/scene/off_surface.h)
   Vec3 normal;    ///< unit, geometric, front side
 };
 
 /// The voxel grid that surfaces are cut by.
 struct VoxelGrid {
   float voxel_m = 1;
-  Vec3 origin;           ///< of voxel 0, 0, 0
-  float diagonal_m = 1;  ///< of the scene
-  float cover_m = 0;     ///< transport::size_for_covers of voxel_m
+  Vec3 origin;        ///< of voxel 0, 0, 0
+  float cover_m = 0;  ///< transport::size_for_covers of voxel_m
 };
 
 /// 21 bits per axis; places outside the grid fall into its border.
@@ -55,9 +54,9 @@ class PatchLocator {
   /// voxel[k] is where parts[k] lies; ascending.
   PatchLocator(const VoxelGrid& grid, std::span<const uint64_t> voxel, std::vector<Part> parts);
 
-  /// The patch at a place of the front side; kNone inside a solid, where it is covered, or when no
-  /// surface of the kind is near. Parts of one voxel that look alike are told apart by sight of
-  /// their seeds.
+  /// The patch at a place just off the front side; kNone inside a solid, where it is covered, or
+  /// when no surface of the kind is near. Parts of one voxel that look alike are told apart by
+  /// sight of their seeds.
   uint32_t locate(Vec3 position, Vec3 normal, uint32_t material,
                   const trace::RayTracer& tracer) const;
   /// The grid that surfaces were cut by.

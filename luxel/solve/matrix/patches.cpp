@@ -11,6 +11,8 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/facet.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/transport/covers.h"
 
@@ -73,19 +75,18 @@ std::vector<Sample> spread(const scene::Scene& scene, const PatchParams& params)
   // Samples on the front, and on the back of double-sided surfaces.
   std::vector<Sample> out;
   for (const scene::SurfacePoint& p : points) {
-    const Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);
+    const scene::Facet facet = scene::facet_of(scene, p.instance, p.triangle);
+    const Vec3 normal = facet.front;
     if (dot(normal, normal) == 0 || !scene::is_solid_at(scene, p)) continue;
     const uint64_t k = key(p.instance, p.triangle);
     const Surface& surface = surfaces[k];
-    Sample sample{{scene::world_position(scene, p), normal},
-                  uint32_t(k),
-                  float(surface.area_m2 / double(surface.points)),
-                  scene::reflectance_at(scene, p),
-                  scene::emission_at(scene, p) * kPi};
+    const auto side = [&](Vec3 n) { return PatchPoint{scene::off_surface(facet, p.at, n), n}; };
+    Sample sample{side(normal), uint32_t(k), float(surface.area_m2 / double(surface.points)),
+                  scene::reflectance_at(scene, p), scene::emission_at(scene, p) * kPi};
     out.push_back(sample);
     if (!scene::material_at(scene, p).double_sided || !has_open_back(scene, p, params.open_backs))
       continue;
-    sample.at.normal = -normal;
+    sample.at = side(-normal);
     out.push_back(sample);
   }
   return out;
@@ -111,8 +112,7 @@ constexpr int kMaxRetries = 3;
 
 VoxelGrid grid_of(const scene::Scene& scene, float voxel_m) {
   const Vec3 inset = kGridInset * voxel_m;
-  const Box3 bounds = scene::world_bounds(scene);
-  return {voxel_m, bounds.lower - inset, bounds.diagonal()};
+  return {voxel_m, scene::world_bounds(scene).lower - inset};
 }
 
 uint32_t main_direction(Vec3 n) {
@@ -389,9 +389,9 @@ uint32_t patch_met(const PatchedScene& patched, const scene::Scene& scene,
   if (!hit.found() || (hit.back_face && !has_open_back(scene, hit.point(), patched.open_backs)))
     return kNone;
   const scene::Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
-  const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-  return patched.locator.locate(scene::world_position(scene, hit.point()),
-                                hit.back_face ? -front : front,
+  const scene::Facet facet = scene::facet_of(scene, hit.instance, hit.triangle);
+  const Vec3 side = hit.back_face ? -facet.front : facet.front;
+  return patched.locator.locate(scene::off_surface(facet, hit.at, side), side,
                                 mesh.triangle_material[hit.triangle], tracer);
 }
 

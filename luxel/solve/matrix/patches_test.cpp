@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "luxel/base/parallel.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/matrix/matrix_test_support.h"
 
 namespace luxel::matrix {
@@ -244,11 +245,14 @@ TEST(Patches, WhatARugCoversIsInNone) {
   // wide on all sides of the rug, 0.02 m^2.
   EXPECT_NEAR(top, 0.16, 0.01);
   EXPECT_NEAR(floor, 1 - 0.16 + 0.02, 0.01);
+  const auto located = [&](Vec3 at, Vec3 n) {
+    return cut.patched.locator.locate(scene::off_surface(at, n, 1), n, 0, cut.tracer);
+  };
   for (const float x : {0.35f, 0.5f, 0.65f}) {
-    EXPECT_EQ(cut.patched.locator.locate({x, 0, 0.5f}, {0, 1, 0}, 0, cut.tracer), kNone);
-    EXPECT_EQ(cut.patched.locator.locate({x, kGap_m, 0.5f}, {0, -1, 0}, 0, cut.tracer), kNone);
-    EXPECT_NE(cut.patched.locator.locate({x, kGap_m, 0.5f}, {0, 1, 0}, 0, cut.tracer), kNone);
-    EXPECT_NE(cut.patched.locator.locate({x, 0, 0.25f}, {0, 1, 0}, 0, cut.tracer), kNone);
+    EXPECT_EQ(located({x, 0, 0.5f}, {0, 1, 0}), kNone);
+    EXPECT_EQ(located({x, kGap_m, 0.5f}, {0, -1, 0}), kNone);
+    EXPECT_NE(located({x, kGap_m, 0.5f}, {0, 1, 0}), kNone);
+    EXPECT_NE(located({x, 0, 0.25f}, {0, 1, 0}), kNone);
   }
 }
 

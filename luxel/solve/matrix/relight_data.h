@@ -55,7 +55,7 @@ struct Target {
   Kind kind = Kind::none;
   uint32_t width = 0, height = 0;              ///< of the map, for texels
   std::vector<std::array<uint16_t, 2>> texel;  ///< per place, for texels: x, y in the map
-  std::vector<Vec3> position;                  ///< per place [m]
+  std::vector<Vec3> position;                  ///< per place [m], as in transport::Elements
   std::vector<Vec3> normal, geometric_normal;  ///< per place: for cosines; of the surface
   Transfer transfer;                           ///< from patches to places
 };
@@ -69,7 +69,7 @@ struct Occluders {
 /// All that an .lxr file holds: docs/format/lxr.md.
 struct RelightData {
   // Per patch, in the order of the codec's cluster tree.
-  std::vector<Vec3> position, normal;  ///< the middle on the surface; unit, front side
+  std::vector<Vec3> position, normal;  ///< the middle, as probes lie; unit, front side
   std::vector<float> area_m2;
   std::vector<Rgb> reflectance;
   std::vector<Rgb> emission;          ///< B_e = pi L as baked [W/m^2]

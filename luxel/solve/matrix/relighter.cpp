@@ -51,7 +51,6 @@ struct Relighter::Impl {
   RelighterParams params;
   scene::Scene occluders;  ///< stays where it is: the tracer refers to it
   std::optional<trace::RayTracer> tracer;
-  float diagonal_m = 0;
   std::vector<Rgb> mean_emission;  ///< B_e per material, as baked
   std::vector<Vec3> probe_position, probe_normal;
 
@@ -107,7 +106,7 @@ void Relighter::Impl::light_patches(std::span<const Rgb> of_probes, std::span<Rg
 
 /// By shadow rays.
 void Relighter::Impl::shine(std::span<const scene::PunctualLight> lights, std::span<Rgb> patches) {
-  live_light({probe_position, probe_normal, probe_normal}, lights, *tracer, diagonal_m, at_probe);
+  live_light({probe_position, probe_normal, probe_normal}, lights, *tracer, at_probe);
   light_patches(at_probe, patches);
 }
 
@@ -149,7 +148,7 @@ void Relighter::Impl::light_places(const RelightLights& lights, Relit& out) {
   const Target& to = data.target;
   transfer(to.transfer, out.indirect, out.indirect_at_points);
   if (params.direct_at_points)
-    live_light({to.position, to.normal, to.geometric_normal}, lights.punctual, *tracer, diagonal_m,
+    live_light({to.position, to.normal, to.geometric_normal}, lights.punctual, *tracer,
                out.direct_at_points);
 }
 
@@ -162,8 +161,6 @@ Result<Relighter> Relighter::make(RelightData data, const RelighterParams& param
   auto impl = std::make_unique<Impl>();
   impl->data = std::move(data), impl->params = params;
   impl->occluders = scene_of(impl->data.occluders);
-  const Box3 bounds = scene::world_bounds(impl->occluders);
-  impl->diagonal_m = length(bounds.upper - bounds.lower);
   LUXEL_TRY(impl->tracer, trace::RayTracer::build(impl->occluders));
   impl->make_room();
   return Relighter(std::move(impl));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/solve/matrix/lxr.h"
+#include "luxel/solve/matrix/lxr_test_support.h"
 #include "luxel/solve/matrix/matrix.h"
 #include "luxel/solve/matrix/relighter_test_support.h"
 
@@ -24,9 +26,7 @@ Rgb plain_light_at(const Stage& stage, const PatchPoint& at, const scene::Punctu
   const Vec3 to = lamp.position - at.position;
   const float along = dot(at.normal, to), d2 = dot(to, to);
   if (along <= 0) return {};
-  const float diagonal_m = scene::world_bounds(stage.scene).diagonal();
-  const Vec3 origin = trace::offset_origin(at.position, at.normal, diagonal_m);
-  if (stage.tracer.closest_hit({origin, 0, to, INFINITY}).t < 0.999f) return {};
+  if (stage.tracer.closest_hit({at.position, 0, to, INFINITY}).t < 0.999f) return {};
   return lamp.intensity * (along / (d2 * std::sqrt(d2)));
 }
 
@@ -282,6 +282,30 @@ TEST(Relighter, DirectLightAtPlacesIsThatOfLamps) {
   EXPECT_LT(dark, 40u);
   Relighter without = relighter_of(stage.data(floor_places(0.54f)));
   EXPECT_TRUE(relit(without, {{&kLeft, 1}}).direct_at_points.empty());
+}
+
+// Files before 1.2 have their places on the floor itself, from where rays would meet it.
+TEST(Relighter, LightsThePlacesOfFilesBefore12) {
+  const Stage stage(scene::cornell_box());
+  const RelightData now = stage.data(floor_places(0.54f));
+  RelightData then = now;
+  for (Vec3& p : then.target.position) p.y = 0;
+  for (PatchPoint& p : then.probe)
+    p.position += p.normal * -scene::rounding_m(p.position, 0.125f * 0.55f);
+  testing::Bytes file = encode_lxr(then);
+  testing::put_at(file, 10, uint16_t(1));
+  testing::mend(file);
+  auto read = decode_lxr(file, "then.lxr");
+  ASSERT_TRUE(read) << read.error().message;
+  Relighter before = relighter_of(std::move(*read), {true}), after = relighter_of(now, {true});
+  const Relit got = relit(before, {{&kLeft, 1}}), want = relit(after, {{&kLeft, 1}});
+  for (size_t k = 0; k < want.direct_at_points.size(); ++k)  // 2^-18 m at 0.2 m from the lamp
+    EXPECT_LE(length(got.direct_at_points[k] - want.direct_at_points[k]),
+              1e-4f * length(want.direct_at_points[k]))
+        << k;
+  // Some probes see it at a low angle.
+  for (size_t k = 0; k < want.direct.size(); ++k)
+    EXPECT_LE(length(got.direct[k] - want.direct[k]), 1e-3f * length(want.direct[k])) << k;
 }
 
 TEST(MakeRelightData, RefusesWhatCannotBe) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/matrix/matrix_test_support.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/solve/matrix/relighter.h"
@@ -63,8 +64,8 @@ inline Target floor_places(float side_m) {
   target.kind = Target::Kind::vertices;
   for (int j = 0; j < 8; ++j)
     for (int i = 0; i < 8; ++i)
-      target.position.push_back(
-          {side_m * (float(i) + 0.5f) / 8, 0, side_m * (float(j) + 0.5f) / 8});
+      target.position.push_back(scene::off_surface(
+          {side_m * (float(i) + 0.5f) / 8, 0, side_m * (float(j) + 0.5f) / 8}, {0, 1, 0}, 1));
   target.normal.assign(target.position.size(), {0, 1, 0});
   target.geometric_normal = target.normal;
   return target;

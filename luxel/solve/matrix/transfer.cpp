@@ -90,14 +90,13 @@ struct Scratch {
 bool is_inside_solid(const PatchedScene& patched, const trace::RayTracer& tracer, Vec3 position,
                      Vec3 normal) {
   constexpr uint32_t kRays = 32;
-  const Vec3 from = trace::offset_origin(position, normal, patched.locator.grid().diagonal_m);
-  const trace::Hit above = tracer.closest_hit({from, 0, normal, patched.patches.voxel_m});
+  const trace::Hit above = tracer.closest_hit({position, 0, normal, patched.patches.voxel_m});
   if (above.found() && above.back_face) return false;
   const Frame frame = frame_around(normal);
   uint32_t backs = 0;
   for (uint32_t k = 0; k < kRays; ++k) {
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 1)));
-    const trace::Hit hit = tracer.closest_hit({from, 0, d, INFINITY});
+    const trace::Hit hit = tracer.closest_hit({position, 0, d, INFINITY});
     backs += hit.found() && hit.back_face;
   }
   return 2 * backs > kRays;

@@ -58,12 +58,12 @@ PlacedLamp lamp_at(const LampScene& s, const LampPlaces& places, uint64_t seed) 
   for (int k = 0, free = 0; k < kMostPlaces && free < places.count; ++k) {
     const auto i =
         std::min(size_t(random.next() * float(s.position.size())), s.position.size() - 1);
-    const Vec3 from = trace::offset_origin(s.position[i], s.normal[i], s.diagonal_m);
+    const Vec3 from = s.position[i];
     const Vec3 towards =
         frame_around(s.normal[i]).to_world(cosine_hemisphere_sample(random.next2()));
     const float hit_m = s.tracer.closest_hit({from, 0, towards, INFINITY}).t;
     const float part = places.nearest + (1 - 2 * places.nearest) * random.next();
-    const Vec3 place = from + towards * (std::min(hit_m, s.diagonal_m) * part);
+    const Vec3 place = from + towards * (std::min(hit_m, s.farthest_m) * part);
     const float room = room_around(s.tracer, place);
     free += room >= s.clearance_m;
     if (room > lamp.room_m) lamp.room_m = room, lamp.light.position = place;
@@ -135,7 +135,6 @@ struct Stage {
   const trace::RayTracer& tracer;
   const Prepared& prepared;
   const Probes probes;
-  float diagonal_m = 0;
 
   size_t size() const { return prepared.patched.patches.size(); }
   Light dark() const { return {std::vector<Rgb>(size()), std::vector<Rgb>(size())}; }
@@ -145,7 +144,7 @@ Light lit_by(const Stage& s, std::span<const scene::PunctualLight> lamps) {
   Light out = s.dark();
   const transport::Elements& at = s.probes.elements;
   std::vector<Rgb> at_probes(at.size());
-  live_light({at.position, at.normal, at.normal}, lamps, s.tracer, s.diagonal_m, at_probes);
+  live_light({at.position, at.normal, at.normal}, lamps, s.tracer, at_probes);
   out.direct = mean_at_patches(s.probes, at_probes);
   return out;
 }
@@ -216,10 +215,9 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
                            const Prepared& prepared, const CoarseScene& coarse,
                            const TrialParams& params, Progress& progress) {
   const Patches& patches = prepared.patched.patches;
-  const Stage stage{scene, tracer, prepared, probes_of(patches),
-                    scene::world_bounds(scene).diagonal()};
+  const Stage stage{scene, tracer, prepared, probes_of(patches)};
   const transport::Elements& at = patches.elements;
-  const LampScene places{tracer, at.position, at.normal, stage.diagonal_m,
+  const LampScene places{tracer, at.position, at.normal, scene::world_bounds(scene).diagonal(),
                          side_of_patches(patches.area_m2)};
   std::vector<Light> lights;
   for (int k = 0; k < params.in_the_open + params.anywhere; ++k) {

@@ -41,7 +41,7 @@ float side_of_patches(std::span<const float> area_m2);
 struct LampScene {
   const trace::RayTracer& tracer;
   std::span<const Vec3> position, normal;  ///< of patches
-  float diagonal_m = 1;                    ///< of the scene
+  float farthest_m = 1;                    ///< the scene's size
   float clearance_m = 0;                   ///< to all surfaces, where such places are found
 };
 /// A point light somewhere between two surfaces; none where no place inside of a room is found.

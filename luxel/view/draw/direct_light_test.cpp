@@ -2,6 +2,7 @@
 // without a device.
 #include "luxel/view/draw/direct_light.h"
 
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/solve/matrix/live_light.h"
@@ -30,7 +31,6 @@ struct Pixel {
 std::vector<Pixel> by_rays(const scene::Scene& scene, const trace::RayTracer& tracer,
                            const scene::Camera& camera,
                            std::span<const scene::PunctualLight> lamps) {
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<Pixel> out;
   for (int i = 0; i < kPictureSide * kPictureSide; ++i) {
     std::array rays{trace::CameraRays(camera, kPictureSide, kPictureSide)
@@ -42,9 +42,10 @@ std::vector<Pixel> by_rays(const scene::Scene& scene, const trace::RayTracer& tr
     const Vec3 position = scene::world_position(scene, p), normal = scene::shading_normal(scene, p);
     pixel.is_surface = true, pixel.instance = p.instance, pixel.triangle = p.triangle;
     pixel.position = position, pixel.facet = scene::front_normal(scene, p.instance, p.triangle);
-    const matrix::LitPoints point{{&position, 1}, {&normal, 1}, {&pixel.facet, 1}};
+    const Vec3 start = scene::off_surface(scene, p, pixel.facet);
+    const matrix::LitPoints point{{&start, 1}, {&normal, 1}, {&pixel.facet, 1}};
     for (size_t k = 0; k < lamps.size(); ++k) {
-      const Rgb e = matrix::live_light_at(point, 0, {&lamps[k], 1}, tracer, diagonal_m);
+      const Rgb e = matrix::live_light_at(point, 0, {&lamps[k], 1}, tracer);
       if (luminance(e) > 0) pixel.lit |= 1u << k;
       pixel.irradiance += e;
     }

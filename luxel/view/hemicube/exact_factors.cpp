@@ -36,9 +36,7 @@ struct Horizon {
 
 Horizon horizon_of(const LightMesh& mesh, uint32_t element) {
   const transport::Elements& e = mesh.receivers.elements;
-  const float diagonal_m = scene::world_bounds(mesh.in->scene).diagonal();
-  const DVec3 from =
-      to_double(trace::offset_origin(e.position[element], e.geometric_normal[element], diagonal_m));
+  const DVec3 from = to_double(e.position[element]);
   const DVec3 normal = normalize(to_double(e.normal[element]));
   const DVec3 facet = normalize(to_double(e.geometric_normal[element]));
   return {from, normal, {{{normal, dot(normal, from)}, {facet, dot(facet, from)}}}};

@@ -155,7 +155,8 @@ TEST(ExactPicture, ComesPartByPartAndIsTheLightAtPixels) {
   ASSERT_NE(face, h::kNone);
   EXPECT_NEAR(piece.solution().faces.faces[face].plane.height(place), 0, 1e-4);
   const h::Receiver receiver{place, piece.solution().faces.faces[face].plane.normal,
-                             piece.solution().faces.faces[face].plane.normal, face};
+                             piece.solution().faces.faces[face].plane.normal, face,
+                             piece.solution().faces.faces[face].size_m};
   const std::array receivers{receiver};
   const auto light =
       h::irradiance_at(piece.solution(), box.scene, *box.tracer, receivers, {1e-3}, box.progress);

@@ -193,13 +193,11 @@ TEST(Estimate, LeavesOutTheLightOfLamps) {
   ASSERT_TRUE(estimate);
   const Draft& got = **estimate;
   const std::vector<Rgb> all = wanted_at(got, moved, settings_of_estimates());
-  const float diagonal_m = scene::world_bounds(got.scene).diagonal();
   std::vector<Rgb> wanted = all;
   for (size_t i = 0; i < wanted.size(); ++i) {
     const matrix::LitPoints at{
         {&known->position[i], 1}, {&known->normal[i], 1}, {&known->normal[i], 1}};
-    wanted[i] =
-        max(wanted[i] - matrix::live_light_at(at, 0, moved.lights, *got.tracer, diagonal_m), Rgb{});
+    wanted[i] = max(wanted[i] - matrix::live_light_at(at, 0, moved.lights, *got.tracer), Rgb{});
   }
   // Nothing but lamps' light is left out: it errs by as much as the whole estimate, but for edges
   // of shadows, which a bake averages within texels.

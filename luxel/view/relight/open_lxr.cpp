@@ -5,6 +5,7 @@
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/render/exposure.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/solve/matrix/live_light.h"
 #include "luxel/solve/matrix/lxr.h"
 
@@ -26,14 +27,13 @@ Status check_texels(const matrix::RelightData& data, const std::string& name) {
 Result<float> first_exposure(const ReadScene& read, const Lamps& lamps,
                              const image::Image& indirect) {
   const std::vector<scene::PunctualLight> lights = shining(lamps);
-  const float diagonal_m = scene::world_bounds(read.scene).diagonal();
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    const Vec3 position = scene::world_position(read.scene, p);
     const Vec3 normal = scene::shading_normal(read.scene, p);
     const Vec3 geometric = scene::front_normal(read.scene, p.instance, p.triangle);
+    const Vec3 position = scene::off_surface(read.scene, p, geometric);
     return display::lightmap_at(read.scene, indirect, p) +
            matrix::live_light_at({{&position, 1}, {&normal, 1}, {&geometric, 1}}, 0, lights,
-                                 *read.tracer, diagonal_m);
+                                 *read.tracer);
   };
   display::DrawParams params;
   params.width = read.width / kSmaller, params.height = read.height / kSmaller;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/post/dilate.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/trace/ray_tracer.h"
@@ -23,7 +24,8 @@ matrix::Target floor_texels() {
   for (uint16_t y = 0; y < 8; ++y)
     for (uint16_t x = 0; x < 8; ++x) {
       target.texel.push_back({uint16_t(x + 3), uint16_t(y + 5)});
-      target.position.push_back({0.55f * (float(x) + 0.5f) / 8, 0, 0.55f * (float(y) + 0.5f) / 8});
+      const Vec3 place{0.55f * (float(x) + 0.5f) / 8, 0, 0.55f * (float(y) + 0.5f) / 8};
+      target.position.push_back(scene::off_surface(place, {0, 1, 0}, 1));
       target.normal.push_back({0, 1, 0});
     }
   target.geometric_normal = target.normal;

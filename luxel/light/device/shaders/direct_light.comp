@@ -23,7 +23,6 @@ const uint kMostPunctual = 64;
 // Traces shadow rays at a triangle: `count` points of it that lie above the horizon, or, of one that
 // stands for its neighbours, one at random.
 void aim_at_triangle(TriangleLight light, Source s, uint count, Receiver r, inout Sum sum) {
-  vec3 origin = origin_of(r);
   LightTriangle triangle = triangle_of(light);
   SphericalTriangle spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   bool front = dot(r.position - light.a, light.normal) > 0;
@@ -36,9 +35,9 @@ void aim_at_triangle(TriangleLight light, Source s, uint count, Receiver r, inou
     if (point.weight <= 0) continue;
     ++kept;
     // The ray ends just before the light, which must not block it.
-    vec3 end = offset_origin(point.target, front ? light.normal : -light.normal, setup.diagonal_m);
+    vec3 end = off_surface(point.target, front ? light.normal : -light.normal, light.size_m);
     float w = s.drawn ? point.weight * point.measure : point.weight;
-    add_shadow_ray(s, sum, r, origin, w, radiance_at(light, point.at) * w, end - origin, 1 - 1e-4);
+    add_shadow_ray(s, sum, r, w, radiance_at(light, point.at) * w, end - r.position, 1 - 1e-4);
   }
   add_source(s, sum);
 }
@@ -104,7 +103,6 @@ void aim_at_punctual(uint number, float chance, Receiver r, inout Sum sum) {
   float cosine = dot(met.towards, r.normal);
   bool disc = light.has_disc != 0;
   if (max(met.irradiance.x, max(met.irradiance.y, met.irradiance.z)) <= 0 || (cosine <= 0 && !disc)) return;
-  vec3 origin = origin_of(r);
   Source s = new_source(0, disc ? samples : 1);
   s.exact = true, s.drawn = chance < 1, s.tint = met.irradiance;
   uvec2 seed = hash64(r.seed, uvec2(0x5000 + number, 0));
@@ -118,7 +116,7 @@ void aim_at_punctual(uint number, float chance, Receiver r, inout Sum sum) {
       w = max(0.0, dot(direction, r.normal));
       if (w <= 0) continue;
     }
-    add_shadow_ray(s, sum, r, origin, w, vec3(w), direction,
+    add_shadow_ray(s, sum, r, w, vec3(w), direction,
                    met.distance_m > 0 ? met.distance_m * (1 - 1e-5) : infinity);
   }
   // Over the disc the cosine averages to that of its centre while all of it is above the horizon.
@@ -152,7 +150,6 @@ uint bright_texel_at(float u) {
 }
 
 void aim_at_bright_texels(Receiver r, inout Sum sum) {
-  vec3 origin = origin_of(r);
   uvec2 seed = hash64(r.seed, uvec2(0x13, 0));
   Source s = new_source(1 / float(samples), samples);
   double power = setup.below.at[setup.bright_count];
@@ -169,7 +166,7 @@ void aim_at_bright_texels(Receiver r, inout Sum sum) {
     vec3 radiance = setup.pixels.at[pixel];
     radiance *= float(power / double(luminance(radiance)));
     float w = folded_cosine(direction, r.normal, r.geometric_normal);
-    add_shadow_ray(s, sum, r, origin, w, radiance * w, direction, uintBitsToFloat(0x7f800000u));
+    add_shadow_ray(s, sum, r, w, radiance * w, direction, uintBitsToFloat(0x7f800000u));
   }
   add_source(s, sum);
 }

@@ -8,7 +8,7 @@
 struct TriangleLight {
   vec3 a, b, c, normal;
   vec3 radiance;
-  float area_m2;
+  float area_m2, size_m;
   uint instance, triangle, piece;
   uint two_sided;
   uint texture_number;  // 1 + that of a LightTexture; 0: it is even
@@ -67,7 +67,6 @@ layout(buffer_reference, scalar) buffer Setup {
   Numbers bright_texels, guide;
   Doubles below, row_cosine;
   Pixels pixels;
-  float diagonal_m;  // of the scene
   float rotation_rad;
   int map_width;
   uint triangle_count, punctual_count, bright_count;

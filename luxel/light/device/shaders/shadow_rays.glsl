@@ -45,12 +45,9 @@ struct Sum {
   uint drawn;
 };
 
-// Where the shadow rays of a place start.
-vec3 origin_of(Receiver r) { return offset_origin(r.position, r.geometric_normal, setup.diagonal_m); }
-
 // Traces a shadow ray at a source, and adds what it brings. One that points below the place's own
 // triangle is blocked by it.
-void add_shadow_ray(inout Source s, inout Sum sum, Receiver r, vec3 origin, float weight, vec3 radiance, vec3 direction,
+void add_shadow_ray(inout Source s, inout Sum sum, Receiver r, float weight, vec3 radiance, vec3 direction,
                     float t_max) {
   s.sum_weight += weight;
   bool second_half = 2 * s.rays >= s.planned;
@@ -58,7 +55,7 @@ void add_shadow_ray(inout Source s, inout Sum sum, Receiver r, vec3 origin, floa
   ++s.rays;
   if (dot(direction, r.geometric_normal) <= 0) return;
   ++sum.light.rays;
-  if (trace(setup.world, Ray(origin, direction, 0, t_max), true).number != kNoTriangle) return;
+  if (trace(setup.world, Ray(r.position, direction, 0, t_max), true).number != kNoTriangle) return;
   s.sum += radiance;
   float l = luminance(radiance);
   s.sum_luminance2 += l * l;

@@ -45,7 +45,7 @@ const float kArrived = 1 - 1e-5, kBeyond = 1 + 1e-4;
 
 struct Path {
   Place at;
-  vec3 origin, throughput, value;
+  vec3 throughput, value;
   Random random;
 };
 
@@ -114,7 +114,7 @@ bool aim_at_emitter(inout Path path, out Aim aim) {
   uint number = setup.emitters.at[k];
   PathTriangle t = setup.triangles.at[number];
   PathMaterial m = setup.materials.at[t.material];
-  vec3 to_light = between(t.corner, at) - path.origin;
+  vec3 to_light = between(t.corner, at) - path.at.position;
   float d2 = dot(to_light, to_light);
   if (!(d2 > 0)) return false;
   vec3 d = to_light / sqrt(d2);
@@ -126,7 +126,7 @@ bool aim_at_emitter(inout Path path, out Aim aim) {
   if (coverage <= 0) return false;
   float pdf = t.pdf_area * d2 / light_cosine;
   float weight = mis_weight(pdf, folded(path, d) / kPi);
-  aim = Aim(Ray(path.origin, to_light, 0, kBeyond), path.throughput * (coverage * cosine / kPi * weight / pdf), number, at);
+  aim = Aim(Ray(path.at.position, to_light, 0, kBeyond), path.throughput * (coverage * cosine / kPi * weight / pdf), number, at);
   return true;
 }
 
@@ -184,7 +184,7 @@ bool aim_at_punctual_light(inout Path path, out Aim aim) {
   }
   float cosine = dot(towards, path.at.normal);
   if (largest(e) <= 0 || cosine <= 0 || dot(towards, path.at.geometric_normal) <= 0) return false;
-  aim = Aim(Ray(path.origin, towards, 0, distance_m > 0 ? distance_m * kArrived : kInfinity),
+  aim = Aim(Ray(path.at.position, towards, 0, distance_m > 0 ? distance_m * kArrived : kInfinity),
             path.throughput * e * (cosine / kPi), 0, vec2(0));
   return true;
 }
@@ -203,7 +203,7 @@ bool aim_at_sky(inout Path path, out Aim aim) {
   float pdf = sky_pdf(d);
   if (!(pdf > 0) || dot(d, path.at.geometric_normal) <= 0) return false;
   float cosine = folded(path, d), weight = mis_weight(pdf, cosine / kPi);
-  aim = Aim(Ray(path.origin, d, 0, kInfinity), path.throughput * sky_towards(d) * (cosine / kPi * weight / pdf), 0, vec2(0));
+  aim = Aim(Ray(path.at.position, d, 0, kInfinity), path.throughput * sky_towards(d) * (cosine / kPi * weight / pdf), 0, vec2(0));
   return true;
 }
 
@@ -223,12 +223,6 @@ void add_found_emission(inout Path path, PathTriangle t, PathMaterial m, vec2 uv
   if (t.pdf_area > 0 && light_cosine <= 0) return;
   float weight = t.pdf_area > 0 ? mis_weight(own / kPi, t.pdf_area * distance_m * distance_m / light_cosine) : 1.0;
   path.value += path.throughput * emission * (cosine / own * weight);
-}
-
-// Moves the path to a side of a surface.
-void move_to(inout Path path, PathTriangle t, Side side) {
-  path.at = place_at(t, side.uv, side.back);
-  path.origin = origin_of(setup, path.at);
 }
 
 // Russian roulette.
@@ -260,7 +254,7 @@ bool advance(inout Path path, vec3 d, Hit hit, int depth, inout Sums sum) {
   if (depth == bounces) return false;
   path.throughput *= reflectance_at(setup, t, m, side.uv);
   if (!survives(path, depth + 1)) return false;
-  move_to(path, t, side);
+  path.at = place_at(t, side.uv, side.back);
   return true;
 }
 
@@ -272,7 +266,7 @@ bool bounce(inout Path path, int depth, inout Sums sum) {
   vec3 d = mirrored_above(to_world(path.at.normal, vec3(circle.x * r, circle.y * r, sqrt(max(0.0, 1 - u.y)))),
                           path.at.geometric_normal);
   for (uint kind = 0; kind < 4; ++kind) {
-    Aim aim = Aim(Ray(path.origin, d, 0, kInfinity), vec3(0), 0, vec2(0));
+    Aim aim = Aim(Ray(path.at.position, d, 0, kInfinity), vec3(0), 0, vec2(0));
     bool is_aimed = kind == 3;
     if (kind == 0 && setup.emitter_count > 0) is_aimed = aim_at_emitter(path, aim);
     if (kind == 1 && setup.light_count > 0) is_aimed = aim_at_punctual_light(path, aim);
@@ -310,7 +304,7 @@ bool start_from_eye(Hit hit, vec3 d, inout Path path, inout Sums sum) {
   }
   path.value = emission_at(setup, t, m, side.uv);
   path.throughput = reflectance_at(setup, t, m, side.uv);
-  move_to(path, t, side);
+  path.at = place_at(t, side.uv, side.back);
   return largest(path.throughput) > 0;
 }
 
@@ -321,7 +315,6 @@ void start_from_place(uint item, uint own_sample, inout Path path) {
     k = first + own_sample % (first_place.at[item + 1] - first);
   }
   path.at = places.at[k];
-  path.origin = origin_of(setup, path.at);
   path.throughput = vec3(1), path.value = vec3(0);
   path.random = Random(path_seed(seed, item, own_sample), 0);
 }

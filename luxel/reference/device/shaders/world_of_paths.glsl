@@ -19,6 +19,7 @@ struct PathTriangle {
   uint other_side;  // of a sheet: its number; or kNoTriangle
   float pdf_area;   // with which its points are picked; 0: never
   float size_m;     // the root of its area
+  float size_for_rounding_m;
 };
 const uint kBasePlaced = 1, kMetalPlaced = 2, kEmissionPlaced = 4, kCurved = 8, kBends = 16;
 struct PathMaterial {
@@ -55,7 +56,6 @@ layout(buffer_reference, scalar) buffer Setup {
   Doubles row_below, column_below;  // reference::SkySampler
   MapPixels pixels;
   vec3 background;
-  float diagonal_m;
   float rotation_rad;
   int map_width, map_height;  // 0: no map
   uint emitter_count, light_count;
@@ -116,8 +116,8 @@ vec3 shading_normal(PathTriangle t, vec2 uv) {
   return side < 0 ? -n : n;
 }
 
-// reference::receiver_at()
-Place place_at(PathTriangle t, vec2 uv, bool back) {
+// On the surface.
+Place place_on(PathTriangle t, vec2 uv, bool back) {
   vec3 at = between(t.corner, uv);
   if ((t.flags & kCurved) == 0) return Place(at, back ? -t.front : t.front, back ? -t.front : t.front);
   vec3 n = shading_normal(t, uv);
@@ -135,7 +135,12 @@ Place place_at(PathTriangle t, vec2 uv, bool back) {
   return Place(at + lift, n, length(lift) > 1e-4 * t.size_m ? n : t.front);
 }
 
-vec3 origin_of(Setup setup, Place p) { return offset_origin(p.position, p.geometric_normal, setup.diagonal_m); }
+// reference::receiver_at()
+Place place_at(PathTriangle t, vec2 uv, bool back) {
+  Place p = place_on(t, uv, back);
+  p.position = off_surface(p.position, p.geometric_normal, t.size_for_rounding_m);
+  return p;
+}
 
 // A RandomStream.
 struct Random {

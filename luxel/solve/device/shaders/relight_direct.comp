@@ -3,7 +3,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "luxel/light/both_punctual_light.h"
-#include "luxel/trace/vulkan/shaders/frame.glsl"
 layout(local_size_x = 64) in;
 
 const uint kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
@@ -25,7 +24,6 @@ layout(push_constant, scalar) uniform Push {
   Places places;
   Colors light;
   uint place_count, light_count;
-  float diagonal_m;  // of the scene
   uint first_group;
 };
 
@@ -44,8 +42,7 @@ vec3 light_of(PunctualLight l, Place p) {
   float cosine = dot(p.normal, towards);
   vec3 arriving = l.intensity * (share * cosine);
   if (!(cosine > 0) || !(max(arriving.x, max(arriving.y, arriving.z)) > 0)) return vec3(0);
-  Ray ray = Ray(offset_origin(p.position, p.normal, diagonal_m), towards, 0, t_max);
-  return trace(world, ray, true).number == kNoTriangle ? arriving : vec3(0);
+  return trace(world, Ray(p.position, towards, 0, t_max), true).number == kNoTriangle ? arriving : vec3(0);
 }
 
 void main() {

@@ -69,7 +69,6 @@ struct GuideScene {
   const light::TexelScene& in;
   const transport::OwnSides& sides;
   const RadiosityMap& sent;
-  float diagonal_m = 0;
   uint64_t seed = 0;
 };
 struct GuideBuffers {
@@ -103,9 +102,8 @@ void add_element(const GuideScene& from, uint32_t i, GuideBuffers& buffers,
                  std::array<CellSums, kCells>& sums) {
   const transport::Elements& e = from.in.elements;
   RayBatch& batch = buffers.batch;
-  fill_rays(trace::offset_origin(e.position[i], e.geometric_normal[i], from.diagonal_m),
-            e.normal[i], e.geometric_normal[i], seed_of_rays(from.seed, i), {0, uint32_t(kCells)},
-            batch);
+  fill_rays(e.position[i], e.normal[i], e.geometric_normal[i], seed_of_rays(from.seed, i),
+            {0, uint32_t(kCells)}, batch);
   buffers.hits.resize(batch.rays.size());
   from.in.tracer.closest_hits(batch.rays, buffers.hits, trace::Packets::alike);
   for (size_t c = 0; c < kCells; ++c)
@@ -138,8 +136,7 @@ Result<Guide> make_guide(const light::TexelScene& in, const transport::OwnSides&
   Groups groups = groups_of(in, light.hits);
   RadiosityMap sent = empty_radiosity_map(in.map.resolution);
   fill_radiosity(sent, in.map, in.elements, light.hits, light.behind, light.irradiance);
-  const GuideScene from{in, sides, sent, scene::world_bounds(in.scene).diagonal(),
-                        hash64(seed, kGuideSeed)};
+  const GuideScene from{in, sides, sent, hash64(seed, kGuideSeed)};
   Guide out;
   out.groups.resize(groups.elements.size());
   const auto of_piece = [&](size_t piece) {

@@ -51,8 +51,7 @@ trace::Ray TexelRays::ray(size_t k, size_t count) const {
       frame_around(e.normal[i])
           .to_world(cosine_hemisphere_sample(sobol_owen_2d(uint32_t(k), hash64(seed)))),
       e.geometric_normal[i]);
-  return {trace::offset_origin(e.position[i], e.geometric_normal[i], near.diagonal_m), 0, d,
-          INFINITY};
+  return {e.position[i], 0, d, INFINITY};
 }
 
 bool TexelRays::reads(const trace::Hit& hit) const {
@@ -98,9 +97,7 @@ Result<ReadCheck> make_read_check(const light::TexelScene& in, const transport::
                                   const TracedHits& hits, const ReadCheckParams& params,
                                   Progress& progress) {
   const std::vector<float> widths = texel_widths_m(in.scene, in.atlas);
-  const NearScene near{in.scene,  in.atlas, in.lights,
-                       in.tracer, widths,   scene::world_bounds(in.scene).diagonal(),
-                       nullptr,   &sides};
+  const NearScene near{in.scene, in.atlas, in.lights, in.tracer, widths, nullptr, &sides};
   // 1. Places that rays of texels meet.
   std::vector<uint32_t> texels;
   for (uint32_t i = 0; i < hits.size(); ++i)
@@ -118,7 +115,7 @@ Result<ReadCheck> make_read_check(const light::TexelScene& in, const transport::
   parallel_for(met.size(), 256, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       const transport::SmoothPoint p = transport::smooth_point(in.scene, met[k].point());
-      places.position[k] = p.position, places.normal[k] = p.normal;
+      places.position[k] = p.start, places.normal[k] = p.normal;
       places.geometric_normal[k] = p.geometric_normal;
       places.reflectance[k] = scene::reflectance_at(in.scene, met[k].point());
       out.read[k] = store(transport::own_lookup(sides, met[k].point()), {});

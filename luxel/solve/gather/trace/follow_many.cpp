@@ -80,7 +80,7 @@ Status Many::step(uint64_t depth, Progress& progress) {
   });
   end_others();
   rays.resize(paths.size()), met.resize(paths.size());
-  for_each([&](size_t k) { rays[k] = {receivers[k].origin, 0, paths[k].direction, INFINITY}; });
+  for_each([&](size_t k) { rays[k] = {receivers[k].position, 0, paths[k].direction, INFINITY}; });
   LUXEL_TRY_STATUS(device.closest_hits(rays, met));
   out.rays += shadow_rays + rays.size();
   // 4. Most end where the map has an answer.

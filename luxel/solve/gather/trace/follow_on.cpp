@@ -132,7 +132,7 @@ void drop_enclosed_paths(const RayScene& in, const transport::Elements& elements
                          const TracedHits& hits, NearBuffers& near) {
   if (near.paths.empty() || near.paths.back().element != element) return;
   if (transport::is_enclosed(in.scene, in.near->tracer, elements, element,
-                             back_faces(hits, element), in.near->diagonal_m))
+                             back_faces(hits, element)))
     std::erase_if(near.paths,
                   [element](const NearPath& p) { return p.element == element && p.hit.back_face; });
 }

@@ -6,6 +6,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/elements.h"
 #include "luxel/transport/texel_width.h"
 
@@ -20,8 +21,9 @@ constexpr float kSureThroughput = 0.1f;
 /// The side of the surface that a ray has met; the back is that of the flat triangle.
 transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit) {
   if (!hit.back_face) return transport::smooth_point(scene, hit.point());
-  return {scene::world_position(scene, hit.point()), -scene::shading_normal(scene, hit.point()),
-          -scene::front_normal(scene, hit.instance, hit.triangle)};
+  const Vec3 back = -scene::front_normal(scene, hit.instance, hit.triangle);
+  return {scene::world_position(scene, hit.point()), scene::off_surface(scene, hit.point(), back),
+          -scene::shading_normal(scene, hit.point()), back};
 }
 
 /// A path that brings nothing more.
@@ -33,8 +35,8 @@ void end(NearPath path, NearBuffers& buffers) {
 /// The light that lights send to where the paths are.
 uint64_t add_direct_light(const NearScene& in, NearBuffers& buffers) {
   buffers.light.resize(buffers.receivers.size());
-  light::direct_light_at({in.scene, in.lights, in.tracer, in.diagonal_m}, {.samples = 1},
-                         buffers.receivers, buffers.batch, buffers.light);
+  light::direct_light_at({in.scene, in.lights, in.tracer}, {.samples = 1}, buffers.receivers,
+                         buffers.batch, buffers.light);
   for (size_t i = 0; i < buffers.paths.size(); ++i) {
     buffers.paths[i].light += buffers.paths[i].throughput * buffers.light[i].irradiance / kPi;
     if (in.layers)
@@ -89,12 +91,11 @@ bool reflect(const NearScene& in, NearPath& path) {
 
 light::Receiver receiver_of(const NearScene& in, uint64_t depth, NearPath& path) {
   const transport::SmoothPoint p = place_of(in.scene, path.hit);
-  const light::Receiver out{p.position, p.normal, p.geometric_normal,
-                            trace::offset_origin(p.position, p.geometric_normal, in.diagonal_m),
+  const light::Receiver out{p.start, p.normal, p.geometric_normal,
                             hash64(path.seed + depth, path.sample ^ 0x80000000u)};
   if (depth == 0)
     path.first_m =
-        path.hit.t + length(out.origin - scene::world_position(in.scene, path.hit.point()));
+        path.hit.t + length(out.position - scene::world_position(in.scene, path.hit.point()));
   return out;
 }
 
@@ -127,7 +128,7 @@ uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {
       end(path, buffers);
       continue;
     }
-    buffers.rays.push_back({buffers.receivers[i].origin, 0, path.direction, INFINITY});
+    buffers.rays.push_back({buffers.receivers[i].position, 0, path.direction, INFINITY});
     buffers.paths[alive++] = path;
   }
   buffers.paths.resize(alive);

@@ -49,7 +49,6 @@ struct NearScene {
   const light::Lights& lights;
   const trace::RayTracer& tracer;
   std::span<const float> texel_width_m;
-  float diagonal_m = 0;
   const light::LightLayers* layers = nullptr;  ///< null: light is not told apart
   const transport::OwnSides* sides = nullptr;  ///< null: every place has a texel of its own side
 };
@@ -85,8 +84,8 @@ uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers);
 bool reflect(const NearScene& in, NearPath& path);
 /// Where a path is lit, and its ray on starts. `depth`: how many steps there have been.
 light::Receiver receiver_of(const NearScene& in, uint64_t depth, NearPath& path);
-/// Draws its ray on, path.direction from at.origin. False: it ends there, by chance, in proportion
-/// to what it carries.
+/// Draws its ray on, path.direction from at.position. False: it ends there, by chance, in
+/// proportion to what it carries.
 bool go_on(const light::Receiver& at, uint64_t depth, NearPath& path);
 
 /// Whether the map has an answer for a place that a path has met; where_own: if own_lookup() reads

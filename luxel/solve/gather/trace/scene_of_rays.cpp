@@ -2,11 +2,10 @@
 
 namespace luxel::gather {
 
-SceneOfRays::SceneOfRays(const TraceScene& in, const TraceParams& params)
-    : diagonal_m_(scene::world_bounds(in.scene).diagonal()) {
+SceneOfRays::SceneOfRays(const TraceScene& in, const TraceParams& params) {
   if (params.follows_near) {
     widths_ = texel_widths_m(in.scene, in.atlas);
-    near_.emplace(NearScene{in.scene, in.atlas, in.lights, in.tracer, widths_, diagonal_m_,
+    near_.emplace(NearScene{in.scene, in.atlas, in.lights, in.tracer, widths_,
                             params.followed_layers ? params.followed_layers : params.layers,
                             in.sides});
   }

@@ -16,10 +16,8 @@ class SceneOfRays {
   SceneOfRays& operator=(const SceneOfRays&) = delete;
 
   const RayScene& rays() const { return *rays_; }
-  float diagonal_m() const { return diagonal_m_; }
 
  private:
-  float diagonal_m_;
   std::vector<float> widths_;
   std::optional<NearScene> near_;
   std::optional<RayScene> rays_;

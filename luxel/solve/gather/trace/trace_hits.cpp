@@ -52,7 +52,6 @@ struct Round {
   const trace::RayTracer& tracer;
   std::span<const uint16_t> target;
   uint64_t seed = 0;
-  float diagonal_m = 0;
   uint64_t number = 0;
   const EarlierRays* earlier = nullptr;  ///< null: nothing is known
   const TileWatch* watch = nullptr;      ///< null: nobody
@@ -63,9 +62,6 @@ struct Round {
     return {hits.samples[i], std::max(hits.samples[i], target[i])};
   }
   void fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBatch& batch) const;
-  Vec3 origin_of(size_t i) const {
-    return trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-  }
   /// The rays that are known of the tile of elements [begin, end), and what those of them meet that
   /// are traced again.
   void trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
@@ -77,7 +73,8 @@ struct Round {
 };
 
 void Round::fill_batch(size_t i, Samples samples, const TracedHits& hits, RayBatch& batch) const {
-  const Vec3 from = origin_of(i), n = elements.normal[i], flat = elements.geometric_normal[i];
+  const Vec3 from = elements.position[i], n = elements.normal[i],
+             flat = elements.geometric_normal[i];
   if (is_guided(hits, i)) {
     const CellShares shares =
         shares_at(hits.guide.groups[hits.guide.of_element[i]], hits.guided[i]);
@@ -195,7 +192,7 @@ void Round::trace_known(size_t begin, size_t end, const RayTile* known, const Tr
     if (knows) {
       cursor.of.follows_again = !stay_followed(*this, i, cursor.of.near_m);
       choose_retraced({elements, *earlier, cell_cones, tracer.has_tints(), doubtful}, i,
-                      origin_of(i), seed_of_rays(seed, i), samples, cursor.of, buffers);
+                      elements.position[i], seed_of_rays(seed, i), samples, cursor.of, buffers);
     }
     add_retraced(knows ? &cursor.of : nullptr, buffers, out);
   }
@@ -378,8 +375,8 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
-  LUXEL_TRY_STATUS(trace_tiles({scene.rays(), elements, in.tracer, target, params.seed,
-                                scene.diagonal_m(), number, params.earlier, params.watch, doubtful},
+  LUXEL_TRY_STATUS(trace_tiles({scene.rays(), elements, in.tracer, target, params.seed, number,
+                                params.earlier, params.watch, doubtful},
                                params, kept, hits, store, progress));
   keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));

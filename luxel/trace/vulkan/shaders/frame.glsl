@@ -1,5 +1,5 @@
 // The frame around a normal, where rays start beside a surface, and luminance, as luxel/base/vec.h and
-// trace::offset_origin() have them.
+// luxel/scene/off_surface.h have them.
 #ifndef FRAME_GLSL
 #define FRAME_GLSL
 
@@ -12,10 +12,11 @@ vec3 to_world(vec3 n, vec3 local) {
   return tangent * local.x + bitangent * local.y + n * local.z;
 }
 
-vec3 offset_origin(vec3 position, vec3 normal, float diagonal_m) {
+float rounding_m(vec3 position, float size_m) {
   vec3 size = abs(position);
-  return position + normal * (3.814697265625e-6 * max(max(size.x, max(size.y, size.z)), diagonal_m));
+  return 4.76837158203125e-7 * max(max(size.x, max(size.y, size.z)), size_m);
 }
+vec3 off_surface(vec3 position, vec3 normal, float size_m) { return position + normal * rounding_m(position, size_m); }
 
 float luminance(vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 

@@ -124,6 +124,52 @@ TEST(KeptUv, ASheetThatIsLitFromAboveIsUnwrapped) {
   EXPECT_FALSE(bake(scene, settings_at(128)).atlas.kept);
 }
 
+/// A crate of 1 m in the middle of a floor of 4 x 4 m. Its TEXCOORD_1 is a layout, that of the
+/// floor was never unwrapped.
+scene::Scene floor_that_was_not_unwrapped() {
+  scene::Scene scene;
+  const uint32_t grey = scene::add_material(scene, "grey", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(scene, {-2, 2, -2, 2}, 0, true, grey);
+  scene::Mesh crate;
+  scene::add_box(crate, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, grey);
+  scene::place(scene, std::move(crate));
+  lay_out_uv1(scene);
+  for (Vec2& uv : scene.meshes[0].uv1) uv = {};
+  return scene;
+}
+
+Rgb light_on_floor(const pipeline::Bake& bake, float x, float z) {
+  const auto tracer = trace::RayTracer::build(bake.scene);
+  const trace::Hit hit = tracer->closest_hit({{x, 3, z}, 0, {0, -1, 0}, INFINITY});
+  return transport::irradiance_at({&bake.atlas, &bake.map, bake.light.irradiance}, hit.point());
+}
+
+// The light is that of the default day, by long bakes: in the crate's shadow and beside it.
+TEST(KeptUv, AFloorThatWasNotUnwrappedGetsItsShadow) {
+  const scene::Scene scene = floor_that_was_not_unwrapped();
+  const pipeline::Bake b = bake(scene, settings_at(128));
+  EXPECT_FALSE(b.atlas.kept);
+  EXPECT_THAT(about_uv1(b), ElementsAre(HasSubstr("TEXCOORD_1 is not kept: 2 triangles of")));
+  const Rgb shadow = light_on_floor(b, -0.7f, -0.7f), sun = light_on_floor(b, 1.5f, 1.5f);
+  const Rgb true_shadow{6530, 9950, 16695}, true_sun{79159, 73489, 68476};
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(shadow[int(c)] / true_shadow[int(c)], 1, 0.05) << c;
+    EXPECT_NEAR(sun[int(c)] / true_sun[int(c)], 1, 0.02) << c;
+  }
+  const pipeline::Bake kept = bake(scene, settings_at(128, atlas::UvMode::keep));
+  EXPECT_TRUE(kept.atlas.kept);
+  EXPECT_THAT(about_uv1(kept), ElementsAre(HasSubstr("--uv keep: 2 triangles of")));
+  EXPECT_EQ(light_on_floor(kept, -0.7f, -0.7f), light_on_floor(kept, 1.5f, 1.5f));
+}
+
+// Several pages are laid out anew in any case.
+TEST(KeptUv, SaysThatPagesReplaceIt) {
+  pipeline::BakeSettings settings = settings_at(64);
+  settings.samples = 1, settings.pages.count = 2;
+  EXPECT_THAT(about_uv1(bake(floor_that_was_not_unwrapped(), settings)),
+              ElementsAre(HasSubstr("TEXCOORD_1 is not kept: it describes one page")));
+}
+
 TEST(KeptUv, ScenesThatCameLitKeepTheirs) {
   for (const char* file :
        {"scenes/living_room/living_room_lit_uv1.glb",

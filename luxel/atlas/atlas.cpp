@@ -108,9 +108,16 @@ Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progr
 Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
   LUXEL_TRY_STATUS(check_params(params));
   progress.begin("charts", 1);
-  if (params.uv != UvMode::unwrap && is_one_page(params)) {
-    Result<Atlas> kept = keep_uv1(scene, params.resolution, progress);
-    if (kept || params.uv == UvMode::keep || kept.error().code == ErrorCode::cancelled) return kept;
+  if (params.uv == UvMode::unwrap || !is_one_page(params)) return unwrap(scene, params, progress);
+  Result<Atlas> kept = keep_uv1(scene, params.resolution, progress);
+  LUXEL_TRY_STATUS(stopped(progress));
+  if (params.uv == UvMode::keep) {
+    if (kept) return kept;
+    return fail(kept.error().code, "--uv keep: {}; use --uv unwrap", kept.error().message);
+  }
+  if (kept) {
+    LUXEL_TRY(const std::string why, why_no_layout(scene, *kept, progress));
+    if (why.empty()) return kept;
   }
   return unwrap(scene, params, progress);
 }

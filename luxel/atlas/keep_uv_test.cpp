@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/atlas/keep_uv.h"
 #include "luxel/atlas/test_scenes.h"
 
 namespace luxel::atlas {
@@ -80,6 +81,68 @@ TEST(KeepUv, AutomaticKeepsWhatIsValidAndUnwrapsTheRest) {
   const Result<Atlas> unwrapped = make(scene, UvMode::automatic);
   ASSERT_TRUE(unwrapped);
   EXPECT_EQ(unwrapped->chart_count, 2u);
+}
+
+/// What automatic says of a scene whose TEXCOORD_1 can be drawn; empty: it is kept.
+std::string why_replaced(const scene::Scene& scene) {
+  Progress progress;
+  const Result<Atlas> kept = make(scene, UvMode::keep);
+  EXPECT_TRUE(kept) << kept.error().message;
+  const Result<std::string> why = why_no_layout(scene, *kept, progress);
+  EXPECT_EQ(make(scene, UvMode::automatic)->kept, why->empty());
+  return *why;
+}
+
+/// A square beside the two, which have 2 m^2.
+scene::Scene with_third_quad(float side, std::array<Vec2, 4> uv1) {
+  scene::Scene scene = two_quads();
+  testing::add_quad(scene.meshes[0], {0, 0, 9}, {side, 0, 9}, {side, side, 9}, {0, side, 9});
+  scene.meshes[0].uv1.insert(scene.meshes[0].uv1.end(), uv1.begin(), uv1.end());
+  scene.meshes[0].triangle_material.resize(6);
+  return scene;
+}
+
+// An object that was never unwrapped there: all zeros, one line, or what rounding makes of them.
+TEST(KeepUv, AutomaticReplacesWhatIsAPointOrALine) {
+  const Vec2 a{0.1f, 0.1f}, b{0.4f, 0.2f}, e{1e-4f, 0}, f{0, 1e-4f};
+  EXPECT_EQ(why_replaced(two_quads()), "");
+  for (const auto& uv1 :
+       {std::array{a, a, a, a}, std::array{a, b, a, b}, std::array{a, a + e, a + e + f, a + f},
+        std::array{a, b, b + f * 1e-3f, a + f * 1e-3f}})
+    EXPECT_THAT(why_replaced(with_third_quad(1, uv1)),
+                HasSubstr("2 triangles of 'one' (mesh 'quads')"));
+}
+
+TEST(KeepUv, ASliverOfTheAreaMayBeAPoint) {
+  const std::array<Vec2, 4> point{};
+  EXPECT_EQ(why_replaced(with_third_quad(0.1f, point)), "");   // 0.5 % of the area
+  EXPECT_NE(why_replaced(with_third_quad(0.16f, point)), "");  // 1.3 %
+}
+
+/// Quads of 1 m in a row, `apart` from each other, each an eighth of a texel wide.
+scene::Scene row_of_small_charts(int count, float apart) {
+  scene::Mesh mesh;
+  mesh.name = "row";
+  constexpr float kTexel = 1.0f / 16, kSide = kTexel / 8;
+  for (int k = 0; k < count; ++k) {
+    const float x = float(k) * (1 + apart);
+    testing::add_quad(mesh, {x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0});
+    // Charts in blocks of eight to a side fill a texel each.
+    const Vec2 at = apart > 0 ? Vec2{float(k % 8), float(k / 8)} * kSide + Vec2{kTexel, kTexel}
+                              : Vec2{float(k) * kSide, 0.3f};
+    for (const Vec2 d : {Vec2{0, 0}, Vec2{kSide, 0}, Vec2{kSide, kSide}, Vec2{0, kSide}})
+      mesh.uv1.push_back(at + d);
+  }
+  return testing::scene_of(std::move(mesh));
+}
+
+// None of them holds the centre of a texel, so none overlaps another there.
+TEST(KeepUv, AutomaticReplacesATexelOfMuchThatLiesApart) {
+  EXPECT_THAT(why_replaced(row_of_small_charts(64, 1)), HasSubstr("that also hold what lies far"));
+}
+
+TEST(KeepUv, AutomaticKeepsTexelsOfWhatHangsTogether) {
+  EXPECT_EQ(why_replaced(row_of_small_charts(64, 0)), "");
 }
 
 }  // namespace

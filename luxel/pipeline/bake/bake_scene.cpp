@@ -86,20 +86,27 @@ std::optional<std::string> ignored_density(const scene::Scene& scene, const atla
 Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& scene,
                                  Progress& progress, Team* team = nullptr) {
   LUXEL_TRY(SettledResolution settled, settle_resolution(settings, scene, progress));
-  const SidesParams params{
+  SidesParams params{
       .uv = settings.uv,
       .resolution = *settled.settings.resolution,
       .one_page = settings.pages.mode == atlas::PageMode::fixed && settings.pages.count == 1};
-  LUXEL_TRY(Sides sides, split_sides(scene, params, progress));
+  std::vector<std::string> about_uv1;
+  LUXEL_TRY(params.uv, settle_uv(scene, params, about_uv1, progress));
+  // What is not kept does not say how large a lightmap is to be.
   BakeSettings of_layout = settings;
+  of_layout.uv = params.uv;
+  if (params.uv != settings.uv && settled.chosen && settled.chosen->uv1_area > 0) {
+    LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
+  }
+  LUXEL_TRY(Sides sides, split_sides(scene, params, progress));
   of_layout.uv = sides.uv;
-  // The resolution was that of TEXCOORD_1, which is not kept.
   if (sides.wrong_in_uv1 && sides.uv == atlas::UvMode::unwrap) {
     LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
   }
   settled.settings.uv = sides.uv;
   LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress, team));
-  layout.wrong_in_uv1 = sides.wrong_in_uv1, layout.warnings = std::move(sides.warnings);
+  layout.wrong_in_uv1 = sides.wrong_in_uv1, layout.warnings = std::move(about_uv1);
+  layout.warnings.insert(layout.warnings.end(), sides.warnings.begin(), sides.warnings.end());
   if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
     layout.warnings.push_back(std::move(text));
   LUXEL_TRY(std::string blended, about_blended(settled, scene, layout.atlas, layout.map, progress));

@@ -77,9 +77,10 @@ auto as_if_lit(scene::Scene& scene, const Do& ask) {
 /// Splits the scene's sides. Any light may come: what sees the open is to have texels of its own.
 Result<Wanted> texels_of(scene::Scene& scene, const RelightSettings& s,
                          std::vector<std::string>& warnings, Progress& progress) {
-  LUXEL_TRY(const Sides sides, as_if_lit(scene, [&] {
-              return split_sides(scene, {s.uv, s.resolution, true, LightIs::to_come}, progress);
-            }));
+  SidesParams params{s.uv, s.resolution, true, LightIs::to_come};
+  LUXEL_TRY(params.uv, settle_uv(scene, params, warnings, progress));
+  LUXEL_TRY(const Sides sides,
+            as_if_lit(scene, [&] { return split_sides(scene, params, progress); }));
   warnings.insert(warnings.end(), sides.warnings.begin(), sides.warnings.end());
   LUXEL_TRY(const atlas::Atlas atlas,
             atlas::make_atlas(scene, {sides.uv, s.resolution, s.texels_per_metre}, progress));

@@ -317,6 +317,31 @@ Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
   return chosen;
 }
 
+Result<atlas::UvMode> settle_uv(const scene::Scene& scene, const SidesParams& params,
+                                std::vector<std::string>& warnings, const Progress& progress) {
+  const bool any = std::ranges::any_of(scene.instances, [&](const scene::Instance& instance) {
+    return !scene.meshes[instance.mesh].uv1.empty();
+  });
+  if (!any || params.uv == atlas::UvMode::unwrap) return params.uv;
+  std::string why = "it describes one page";
+  if (params.one_page) {
+    const auto kept = atlas::keep_uv1(scene, params.resolution, progress);
+    LUXEL_TRY_STATUS(stopped(progress));
+    if (kept) {
+      LUXEL_TRY(why, atlas::why_no_layout(scene, *kept, progress));
+      if (why.empty()) return params.uv;
+    } else {
+      why = kept.error().message;
+    }
+  }
+  if (params.uv == atlas::UvMode::keep) {
+    warnings.push_back("--uv keep: " + why);
+    return params.uv;
+  }
+  warnings.push_back("TEXCOORD_1 is not kept: " + why + "; a new layout takes its place");
+  return atlas::UvMode::unwrap;
+}
+
 Result<Sides> split_sides(scene::Scene& scene, const SidesParams& params, Progress& progress) {
   Sides out{params.uv, {}, {}};
   LUXEL_TRY(const auto open, open_backs(scene, progress));

@@ -32,6 +32,11 @@ struct SidesParams {
   LightIs light_is = LightIs::known;
 };
 
+/// params.uv, or unwrap where automatic meets a TEXCOORD_1 that it does not keep: a warning says
+/// why then, or what `keep` keeps all the same. Errors: cancelled; what --uv keep cannot be.
+Result<atlas::UvMode> settle_uv(const scene::Scene& scene, const SidesParams& params,
+                                std::vector<std::string>& warnings, const Progress& progress);
+
 /// What became of the sides.
 struct Sides {
   atlas::UvMode uv;  ///< for the layout: unwrap where TEXCOORD_1 cannot hold the light

@@ -388,6 +388,32 @@ def modifiers():
     check((uv >= 0).all() and (uv <= 1).all() and uv.std() > 0.001, "the cube has no places in the lightmap")
 
 
+def what_is_no_mesh_is_named():
+    new_scene("no meshes", 32)
+    floor = plane("floor", 4, (0, 0, 0), (0.5, 0.5, 0.5))
+    lamp("POINT", (0, 0, 2), 100)
+    check(bake() == "", "the bake failed")
+    check("Left" not in bpy.context.window_manager.luxel.warnings, "a plane alone is named")
+    bpy.ops.object.text_add(location=(0, 0, 1))
+    bpy.context.object.name = "Title"
+    for name, bevel in (("Rail", 0.1), ("Path", 0)):  # a path without thickness has no surface
+        bpy.ops.curve.primitive_bezier_curve_add(location=(0, 0, 1))
+        bpy.context.object.name, bpy.context.object.data.bevel_depth = name, bevel
+    bpy.ops.object.metaball_add(location=(0, 0, 1))
+    bpy.context.object.name = "Drop"
+    collection = bpy.data.collections.new("trees")
+    collection.objects.link(bpy.data.objects.new("tree", floor.data))
+    forest = bpy.data.objects.new("Forest", None)
+    forest.instance_type, forest.instance_collection = "COLLECTION", collection
+    bpy.context.collection.objects.link(forest)
+    check(bake() == "", "the bake failed")
+    said = bpy.context.window_manager.luxel.warnings
+    for part in ("Left without a lightmap: text 'Title', curve 'Rail'; ", "Left out of the bake: metaball 'Drop'; ",
+                 "Left without a lightmap: the instances of 'Forest'; "):
+        check(part in said, f"'{part}' is not said: {said}")
+    check("Path" not in said and "floor" not in said, f"what has a lightmap or no surface is named: {said}")
+
+
 def errors_are_sentences():
     new_scene("errors")
     plane("floor", 4, (0, 0, 0), (0.5, 0.5, 0.5))
@@ -460,7 +486,7 @@ def main():
     bpy.ops.preferences.addon_install(filepath=ADDON, overwrite=True)
     for test in (lamp_of_known_lux, other_lamps, cycles_shows_what_luxel_shows, layers_are_mixed, what_is_left_alone,
                  every_face_has_its_place, other_shaders, the_frame_that_is_seen, two_scenes, modifiers,
-                 errors_are_sentences, a_bake_that_is_stopped, the_sky_is_where_it_was):
+                 what_is_no_mesh_is_named, errors_are_sentences, a_bake_that_is_stopped, the_sky_is_where_it_was):
         test()
         print(f"{test.__name__} holds", flush=True)
     print("passed")

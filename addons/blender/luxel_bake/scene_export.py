@@ -39,6 +39,48 @@ def baked_objects(context):
     return meshes
 
 
+# Blender's exporter makes surfaces of the first kinds, which cast shadows and have no lightmap, and of the others none.
+WITHOUT_LIGHTMAP = {"FONT": "text", "CURVE": "curve", "SURFACE": "surface"}
+LEFT_OUT = {"META": "metaball", "CURVES": "hair", "POINTCLOUD": "point cloud", "VOLUME": "volume",
+            "GPENCIL": "grease pencil", "GREASEPENCIL": "grease pencil"}
+
+
+def has_surface(one, depsgraph):
+    """Whether a curve or text has any: a path has none."""
+    evaluated = one.evaluated_get(depsgraph)
+    try:
+        return len(evaluated.to_mesh().polygons) > 0
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def listed(names):
+    return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+
+
+def about_what_is_no_mesh(context):
+    """Sentences about what is seen and rendered, and gets no lightmap because it is no mesh of its own."""
+    depsgraph = context.evaluated_depsgraph_get()
+    parts = [one for one in context.view_layer.objects if takes_part(one)]
+    without = [f"{WITHOUT_LIGHTMAP[one.type]} '{one.name}'" for one in parts
+               if one.type in WITHOUT_LIGHTMAP and has_surface(one, depsgraph)]
+    left_out = [f"{LEFT_OUT[one.type]} '{one.name}'" for one in parts if one.type in LEFT_OUT]
+    instancers = [one.parent.original for one in depsgraph.object_instances
+                  if one.is_instance and one.object.type == "MESH"]
+    # Curves and texts instance a mesh of their own.
+    copies = {one.name: None for one in instancers
+              if takes_part(one) and one.type not in {**WITHOUT_LIGHTMAP, **LEFT_OUT}}
+    about = []
+    if without:
+        about.append(f"Left without a lightmap: {listed(without)}; convert them to meshes (Object > Convert > Mesh).")
+    if left_out:
+        about.append(f"Left out of the bake: {listed(left_out)}; convert them to meshes (Object > Convert > Mesh).")
+    if copies:
+        names = listed([f"'{name}'" for name in copies])
+        about.append(f"Left without a lightmap: the instances of {names}; make them real (Object > Apply).")
+    return about
+
+
 def about_what_is_left_out(context):
     """Sentences about what luxel takes otherwise than Blender."""
     about = []
@@ -53,7 +95,7 @@ def about_what_is_left_out(context):
             about.append(f"Area lamp '{one.name}' has a spread of less than 180 degrees; luxel ignores the spread.")
         if one.data.use_nodes:
             about.append(f"Lamp '{one.name}' has nodes; luxel does not support them.")
-    return about
+    return about + about_what_is_no_mesh(context)
 
 
 @contextlib.contextmanager

@@ -133,7 +133,7 @@ Status check_instances(const scene::Scene& scene) {
   return {};
 }
 
-/// What exporters leave of slivers without a place of their own is less of a surface than this.
+/// Exporters leave slivers without a place of their own, which are less of a surface than this.
 constexpr double kFewWithoutPlace = 0.01;
 
 double area_of(const Atlas& atlas, uint32_t t) {
@@ -142,7 +142,7 @@ double area_of(const Atlas& atlas, uint32_t t) {
          std::abs(cross(to_double(c[1]) - to_double(c[0]), to_double(c[2]) - to_double(c[0])));
 }
 
-/// What of a layout tells the scale of a texel.
+/// Areas that tell the scale of a texel.
 struct Areas {
   std::vector<float> world;  ///< per drawn triangle [m^2]
   double m2_per_texel = 0;   ///< mean over all triangles
@@ -160,7 +160,7 @@ Areas areas_of(const scene::Scene& scene, const Atlas& atlas) {
   return out;
 }
 
-/// Whether a triangle is a point or a line of the map, up to what rounding leaves of them.
+/// True where a triangle is a point or a line of the map, up to rounding.
 bool is_collapsed(const Atlas& atlas, const Areas& areas, uint32_t t) {
   constexpr double kLine = 1e-7, kPoint = 1e-3;  // of a square; of what triangles have in the mean
   const auto& c = atlas.corners[t];

@@ -1,7 +1,7 @@
 // The shared scenes, against the triangle counts that their README states.
 #include <gmock/gmock.h>
 
-#include "luxel/import/import.h"
+#include "luxel/import/test_files.h"
 #include "tests/support.h"
 
 namespace luxel::import {
@@ -44,6 +44,48 @@ INSTANTIATE_TEST_SUITE_P(
                       RealScene{"spot_teapot_bunny/spot.obj", 5856, 0},
                       RealScene{"spot_teapot_bunny/teapot.obj", 6320, 0},
                       RealScene{"spot_teapot_bunny/stanford-bunny.obj", 69451, 0}));
+
+/// A small file as other programs write them, and what its README says is right.
+struct KnownFile {
+  const char* file;
+  float area_m2;
+  uint32_t triangles;
+  Vec3 upper;  ///< corner of its bounds
+  const char* warned_of = "";
+};
+void PrintTo(const KnownFile& p, std::ostream* out) { *out << p.file; }
+
+class KnownFiles : public ::testing::TestWithParam<KnownFile> {};
+
+TEST_P(KnownFiles, HaveTheShapeOfTheReadme) {
+  const std::string file = std::string("cases/") + GetParam().file;
+  LUXEL_NEEDS_SHARED(file);
+  const auto imported = import_scene(testing_support::shared_folder() / file);
+  const scene::Scene scene = scene_of(imported);
+  EXPECT_NEAR(drawn_area(scene), GetParam().area_m2, 1e-5f * GetParam().area_m2);
+  EXPECT_EQ(scene::first_triangles(scene).back(), GetParam().triangles);
+  expect_near(scene::world_bounds(scene).upper, GetParam().upper, 1e-5f);
+  EXPECT_THAT(all_of(imported->warnings), ::testing::HasSubstr(GetParam().warned_of));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shared, KnownFiles,
+    ::testing::Values(
+        KnownFile{"ngon-wrongly-triangulated/t.obj", 6, 6, {4, 3, 0}},
+        KnownFile{"ngon-wrongly-triangulated/t.ply", 6, 6, {4, 3, 0}},
+        KnownFile{"ngon-wrongly-triangulated/t.dae", 6, 6, {4, 3, 0}},
+        KnownFile{"ngon-wrongly-triangulated/t.fbx", 6, 6, {4, 3, 0}},
+        KnownFile{"ngon-wrongly-triangulated/notches.obj", 24.8f, 22, {5, 0, 0}},
+        KnownFile{"obj-comment-after-face/comment.obj", 4, 2, {1, 0, 1}},
+        KnownFile{"obj-latin1-object-name/door.obj", 4, 2, {1, 0, 1}},
+        KnownFile{"obj-line-continuation/continued.obj", 4, 2, {1, 0, 1}},
+        KnownFile{"morph-default-weights/lid.glb", 40, 4, {3, 1, 3}},
+        KnownFile{"skin-node-transform/figure.glb", 18.76f, 14, {2, 1.8f, 2}},
+        KnownFile{"texture-missing-or-tga/tga.obj", 4, 2, {1, 0, 1}},
+        KnownFile{"texture-missing-or-tga/bmp.obj", 4, 2, {1, 0, 1}},
+        KnownFile{"texture-missing-or-tga/case.obj", 4, 2, {1, 0, 1}},
+        KnownFile{"texture-missing-or-tga/missing.obj", 4, 2, {1, 0, 1}, "is nothere.png, which"},
+        KnownFile{"texture-missing-or-tga/absolute.fbx", 4, 2, {1, 0, 1}, "floor.png, which"}));
 
 TEST(RealSceneParts, KaykitSharesMeshes) {
   LUXEL_NEEDS_SHARED("scenes/kaykit_city");

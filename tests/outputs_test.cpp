@@ -191,9 +191,11 @@ TEST(BakedGlb, ReadsBackASecondSetOfTextureCoordinates) {
   mesh.uv0 = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
   mesh.uv1 = {{0.3f, 0}, {0.3f, 0}, {0.9f, 0}, {0.9f, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}}, mesh.triangle_material = {0, 0};
-  sheet.textures.push_back({.name = "bands", .width = 4, .height = 1, .rgba = {}});
+  sheet.textures.resize(1);
+  sheet.textures[0].width = 4, sheet.textures[0].height = 1;
   sheet.textures[0].rgba = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 99, 99, 99, 255};
-  sheet.materials[0].base_color_texture = {.texture = 0, .uv_set = 1};
+  sheet.materials[0].base_color_texture.texture = 0;
+  sheet.materials[0].base_color_texture.uv_set = 1;
   const auto glb = export_::scene_glb(sheet);
   ASSERT_TRUE(glb && write_file_atomically(s.path / "sheet.glb", *glb));
   ASSERT_EQ(

@@ -12,6 +12,7 @@
 #include "luxel/export/baked_glb.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
+#include "luxel/scene/shapes.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 
@@ -222,6 +223,35 @@ TEST(BakedGlb, ReadsBackASecondSetOfTextureCoordinates) {
     ASSERT_TRUE(after.contains(place));
     EXPECT_LT(length(after.at(place) - color), 1e-5f);
   }
+}
+
+// A deck with open air below and a wall on it, four triangles of a double-sided material: each gets
+// a back, and the deck is cut under the wall.
+TEST(BakedGlb, SaysWhyItHasMoreTriangles) {
+  scene::Scene scene;
+  const uint32_t wood = scene::add_material(scene, "wood", {0.5f, 0.5f, 0.5f});
+  scene.materials[wood].double_sided = true;
+  scene::Mesh mesh;
+  scene::add_quad(mesh, {Vec3{-2, 1, 2}, {2, 1, 2}, {2, 1, -2}, {-2, 1, -2}}, wood);
+  scene::add_quad(mesh, {Vec3{-2, 1, 0.3f}, {2, 1, 0.3f}, {2, 2, 0.3f}, {-2, 2, 0.3f}}, wood);
+  scene::place(scene, std::move(mesh));
+  const ScratchFolder s;
+  ASSERT_TRUE(write_file_atomically(s.path / "deck.glb", *export_::scene_glb(scene)));
+  const CommandResult r =
+      bake_for_outputs((s.path / "deck.glb").string(), s.path / "b", "--resolution 64 --samples 4");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const nlohmann::json counts = nlohmann::json::parse(slurp(s.path / "b" / "bake.json"))["counts"];
+  const auto baked = import::import_scene(s.path / "b" / "baked.glb");
+  const size_t all = scene::first_triangles(baked->scene).back();
+  EXPECT_GT(all, 8u);
+  EXPECT_EQ(counts["triangles"], all);
+  EXPECT_EQ(counts["triangles_of_file"], 4);
+  EXPECT_EQ(counts["backs"], all / 2);
+  const double times = double(all) / 4;
+  EXPECT_THAT(r.err,
+              HasSubstr(fmt::format("{} triangles, {:.1f} times the file's 4 (2.0 by backs of "
+                                    "thin surfaces, {:.1f} by cuts",
+                                    all, times, times / 2)));
 }
 
 // Read back and drawn without a lightmap, both ways of attaching light show what preview.png shows:

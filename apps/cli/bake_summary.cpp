@@ -25,6 +25,19 @@ std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::j
                     at[1], at[2]);
 }
 
+/// The number of triangles, and why it is more than twice the file's.
+std::string triangles_text(const nlohmann::json& counts) {
+  const auto all = counts["triangles"].get<uint64_t>(),
+             own = counts["triangles_of_file"].get<uint64_t>(),
+             fronts = all - counts["backs"].get<uint64_t>();
+  if (all <= 2 * own) return fmt::format("{} triangles", all);
+  return fmt::format(
+      "{} triangles, {:.1f} times the file's {} ({:.1f} by backs of thin surfaces, {:.1f} by cuts "
+      "where walls stand on charts)",
+      all, double(all) / double(own), own, double(all) / double(fronts),
+      double(fronts) / double(own));
+}
+
 }  // namespace
 
 void print_bake(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
@@ -32,8 +45,8 @@ void print_bake(const pipeline::BakeSettings& settings, const nlohmann::json& js
   const size_t pages = json["atlas"]["pages"].size();
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s{}",
-                  counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
+      fmt::format("{}, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s{}",
+                  triangles_text(counts), counts["charts"].get<uint64_t>(),
                   pages == 1 ? "" : fmt::format("{} pages of up to ", pages),
                   json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),

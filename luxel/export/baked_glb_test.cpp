@@ -12,6 +12,7 @@
 #include "luxel/export/gltf_material.h"
 #include "luxel/export/scene_test_support.h"
 #include "luxel/image/codec.h"
+#include "luxel/scene/shapes.h"
 #include "tests/support.h"
 
 namespace luxel::export_ {
@@ -217,6 +218,40 @@ TEST(SceneGlb, SharedMeshesStayShared) {
       expect_same_triangle(scene, i, t, triangles[next++]);
   EXPECT_EQ(next, triangles.size());
   EXPECT_FALSE(d.j["materials"][0].value("extensions", json::object()).contains("MOZ_lightmap"));
+}
+
+// Each instance has a mesh of its own, for its place in the lightmap. What is alike of them stands
+// in the file once.
+TEST(BakedGlb, InstancesShareWhatIsAlike) {
+  scene::Scene scene;
+  scene::add_material(scene, "grey", {0.5f, 0.5f, 0.5f});
+  scene::Mesh ball = scene::sphere("ball", 1, 16, 8, 0);
+  scene::place(scene, std::move(ball));
+  const auto bytes_of = [&] {
+    Progress progress;
+    const auto atlas =
+        atlas::make_atlas(scene, {.uv = atlas::UvMode::unwrap, .resolution = 256}, progress);
+    return baked_glb(scene, *atlas, image::Image(1, 1, 4)).value();
+  };
+  const size_t of_one = bytes_of().size();
+  for (const float x : {3.0f, 6.0f, 9.0f}) {
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances.back().world_from_object = translation({x, 0, 0});
+  }
+  const std::vector<std::byte> glb = bytes_of();
+  const Document d = parse(glb);
+  std::set<size_t> positions, indices, places;
+  for (const json& mesh : d.j["meshes"]) {
+    const json& primitive = mesh["primitives"][0];
+    positions.insert(primitive["attributes"]["POSITION"].get<size_t>());
+    places.insert(primitive["attributes"]["TEXCOORD_1"].get<size_t>());
+    indices.insert(primitive["indices"].get<size_t>());
+  }
+  EXPECT_EQ(places.size(), 4u);
+  EXPECT_EQ(positions.size(), 1u);
+  EXPECT_EQ(indices.size(), 1u);
+  EXPECT_LT(glb.size(), 3 * of_one);
+  EXPECT_EQ(read_triangles(d).size(), 4 * scene.meshes[0].triangles.size());
 }
 
 // WebP may come in by an extension; what goes out needs none.

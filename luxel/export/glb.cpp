@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "luxel/base/check.h"
+#include "luxel/base/digest.h"
 #include "luxel/export/json_parts.h"
 
 namespace luxel::export_ {
@@ -26,27 +27,52 @@ void append_u32(std::vector<std::byte>& bytes, uint32_t value) {
   bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
 
+/// Whether an accessor holds these bytes.
+bool holds(const Glb& glb, const json& accessor, const json& kind,
+           std::span<const std::byte> bytes) {
+  for (const auto& [key, value] : kind.items())
+    if (accessor.at(key) != value) return false;
+  const json& view = glb.json.at("bufferViews").at(accessor.at("bufferView").get<size_t>());
+  return view.at("byteLength").get<size_t>() == bytes.size() &&
+         std::memcmp(glb.buffer.data() + view.at("byteOffset").get<size_t>(), bytes.data(),
+                     bytes.size()) == 0;
+}
+
+/// An accessor of `bytes` with the keys of `kind`: one that is there, or a new one, which gets what
+/// `bounds` says, too. View: its target and stride.
+template <class Bounds>
+size_t find_or_append(Glb& glb, std::span<const std::byte> bytes, json kind, int target,
+                      size_t stride, const Bounds& bounds) {
+  Digest digest;
+  digest.add(bytes), digest.add(kind.dump());
+  const auto [begin, end] = glb.accessor_of_digest.equal_range(digest.value());
+  for (auto known = begin; known != end; ++known)
+    if (holds(glb, glb.json["accessors"][known->second], kind, bytes)) return known->second;
+  bounds(kind);
+  kind["bufferView"] = append_view(glb, bytes, target, stride);
+  const size_t made = append(glb, "accessors", std::move(kind));
+  glb.accessor_of_digest.emplace(digest.value(), made);
+  return made;
+}
+
 /// `components` floats per value, `count` values.
 size_t append_floats(Glb& glb, std::span<const std::byte> bytes, const char* type,
                      size_t components) {
   LUXEL_CHECK(!bytes.empty());
   const size_t count = bytes.size() / (components * sizeof(float));
-  std::vector<float> lower(components, INFINITY), upper(components, -INFINITY);
-  for (size_t i = 0; i < count * components; ++i) {
-    float v;
-    std::memcpy(&v, bytes.data() + i * sizeof(float), sizeof(float));
-    LUXEL_CHECK(std::isfinite(v));
-    lower[i % components] = std::min(lower[i % components], v);
-    upper[i % components] = std::max(upper[i % components], v);
-  }
-  const size_t view = append_view(glb, bytes, kArrayBuffer, components * sizeof(float));
-  return append(glb, "accessors",
-                {{"bufferView", view},
-                 {"componentType", kFloat},
-                 {"count", count},
-                 {"type", type},
-                 {"min", lower},
-                 {"max", upper}});
+  const auto bounds = [&](json& accessor) {
+    std::vector<float> lower(components, INFINITY), upper(components, -INFINITY);
+    for (size_t i = 0; i < count * components; ++i) {
+      float v;
+      std::memcpy(&v, bytes.data() + i * sizeof(float), sizeof(float));
+      LUXEL_CHECK(std::isfinite(v));
+      lower[i % components] = std::min(lower[i % components], v);
+      upper[i % components] = std::max(upper[i % components], v);
+    }
+    accessor["min"] = lower, accessor["max"] = upper;
+  };
+  return find_or_append(glb, bytes, {{"componentType", kFloat}, {"count", count}, {"type", type}},
+                        kArrayBuffer, components * sizeof(float), bounds);
 }
 
 }  // namespace
@@ -88,14 +114,12 @@ size_t append_indices(Glb& glb, std::span<const uint32_t> indices) {
   const std::vector<uint16_t> shorts =
       narrow ? std::vector<uint16_t>(indices.begin(), indices.end()) : std::vector<uint16_t>{};
   const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
-  const size_t view = append_view(glb, bytes, kElementArrayBuffer, 0);
-  return append(glb, "accessors",
-                {{"bufferView", view},
-                 {"componentType", narrow ? kUnsignedShort : kUnsignedInt},
-                 {"count", indices.size()},
-                 {"type", "SCALAR"},
-                 {"min", {*lowest}},
-                 {"max", {*highest}}});
+  const json kind = {{"componentType", narrow ? kUnsignedShort : kUnsignedInt},
+                     {"count", indices.size()},
+                     {"type", "SCALAR"}};
+  return find_or_append(glb, bytes, kind, kElementArrayBuffer, 0, [&](json& accessor) {
+    accessor["min"] = {*lowest}, accessor["max"] = {*highest};
+  });
 }
 
 Result<std::vector<std::byte>> finish(Glb glb) {

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "luxel/base/result.h"
@@ -19,6 +20,8 @@ struct Glb {
   nlohmann::json json = nlohmann::json::object();
   std::vector<std::byte> buffer;
   std::set<std::string> extensions_used;
+  /// Accessors by a digest of their bytes and kind: what is alike stands in the file once.
+  std::unordered_multimap<uint64_t, size_t> accessor_of_digest = {};
 };
 
 /// Appends `value` to the top-level array `array` and returns its index.
@@ -28,7 +31,8 @@ size_t append(Glb& glb, const char* array, nlohmann::json value);
 /// Target and stride 0 are left out (pictures have neither, indices no stride).
 size_t append_view(Glb& glb, std::span<const std::byte> bytes, int target, size_t stride);
 
-/// Vertex attributes as accessors of floats with their bounds. Not empty.
+/// Vertex attributes as accessors of floats with their bounds. Not empty. An accessor of the same
+/// values is used again, here and for indices.
 size_t append_accessor(Glb& glb, std::span<const Vec2> values);
 size_t append_accessor(Glb& glb, std::span<const Vec3> values);
 size_t append_accessor(Glb& glb, std::span<const std::array<float, 4>> values);

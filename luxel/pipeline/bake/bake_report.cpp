@@ -39,6 +39,16 @@ nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
   return out;
 }
 
+/// Drawn triangles that are the second side of another one.
+size_t count_backs(const scene::Scene& scene) {
+  size_t out = 0;
+  for (const scene::Instance& instance : scene.instances) {
+    const scene::Mesh& mesh = scene.meshes[instance.mesh];
+    out += mesh.other_side.size() - size_t(std::ranges::count(mesh.other_side, scene::kNone));
+  }
+  return out / 2;
+}
+
 /// How sure the light is, and where it is least so.
 nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
   const std::vector<float>& errors = bake.light.errors;
@@ -76,6 +86,8 @@ nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
       {"settings", to_json(settings)},
       {"counts",
        {{"triangles", bake.atlas.corners.size()},
+        {"triangles_of_file", bake.triangles_of_file},
+        {"backs", count_backs(bake.scene)},
         {"texels", bake.map.texels.size()},
         {"rays", bake.light.rays},
         {"charts", bake.atlas.chart_count},

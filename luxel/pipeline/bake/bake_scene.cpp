@@ -201,6 +201,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   LUXEL_TRY(const Keepers keepers, settle_device(settings, wanted, bake.warnings));
   LUXEL_TRY(const std::vector<uint32_t> masked, masked_lights(settings, bake.scene));
   LUXEL_TRY_STATUS(check_view(settings.view, bake.scene, settings.scene.string()));
+  bake.triangles_of_file = scene::first_triangles(bake.scene).back();
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};

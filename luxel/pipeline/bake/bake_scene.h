@@ -36,7 +36,8 @@ struct Keepers {
 
 /// A finished bake in memory, before anything is written.
 struct Bake {
-  scene::Scene scene;  ///< as baked: outside light added, charts cut
+  scene::Scene scene;            ///< as baked: outside light added, charts cut
+  size_t triangles_of_file = 0;  ///< drawn ones, before backs were added and charts cut
   atlas::Atlas atlas;
   atlas::TexelMap map;
   atlas::AtlasStats atlas_stats;

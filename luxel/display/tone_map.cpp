@@ -44,13 +44,16 @@ float percentile_of(std::vector<float>& values, double percentile) {
   return values[rank];
 }
 
+/// Of the pixels that show a surface; of all, where none of these has light: the sky is what there
+/// is to see.
 std::vector<float> luminances(const image::Image& radiance) {
-  std::vector<float> values;
+  std::vector<float> all, surfaces;
   for (int y = 0; y < radiance.height; ++y)
-    for (int x = 0; x < radiance.width; ++x)
-      if (radiance.channels == 3 || radiance.at(x, y)[3] > 0)
-        values.push_back(luminance(radiance.rgb(x, y)));
-  return values;
+    for (int x = 0; x < radiance.width; ++x) {
+      all.push_back(luminance(radiance.rgb(x, y)));
+      if (radiance.channels == 3 || radiance.at(x, y)[3] > 0) surfaces.push_back(all.back());
+    }
+  return std::ranges::any_of(surfaces, [](float v) { return v > 0; }) ? surfaces : all;
 }
 
 /// The percentile, that of the pixels with light where it is black; 0 where nothing has light.
@@ -87,24 +90,20 @@ float readable_exposure(const image::Image& radiance) {
   return std::clamp(kMeanShownAt / mean, kBrightShownAt / bright, kBrightestShownAt / bright);
 }
 
-/// Two shoulders. The first brings luminance Y to f = shoulder(Y) and scales the colour by f / Y.
-/// The largest channel m may then still lie above 1, by hue alone: of the room h = 1 - f above grey
-/// it wants d = m - f. Moving the colour towards the grey of its own luminance by the factor
-/// h shoulder(d / h) / d <= 1 keeps luminance and hue and brings m below 1.
-/// With all channels at most 1/2, Y <= m <= 1/2 and d / h = (m - Y) / (1 - Y) <= 1/2: unchanged.
+/// The largest channel m goes over the shoulder and the others stay in proportion to it, so hue and
+/// saturation are those of the light up to m = 1. What is brighter moves slowly towards the grey of
+/// its largest channel.
 Rgb compress(Rgb exposed) {
+  constexpr float kWhitening = 0.15f;
   // Beyond any screen, and far enough from overflow for what follows.
   constexpr float kMost = 1e30f;
   const Rgb c = min(max(exposed, Rgb{}), Rgb{kMost, kMost, kMost});
-  const float y = luminance(c);
-  if (!(y > 0)) return {};
-  const float f = shoulder(y);
-  const Rgb scaled = c * (f / y);
-  const float room = 1 - f, wanted = max_component(scaled) - f;
-  if (wanted <= kLinearUpTo * room) return scaled;
-  const float saturation = room * shoulder(wanted / room) / wanted;
+  const float m = max_component(c);
+  if (!(m > 0)) return {};
+  const float f = shoulder(m);
+  const float kept = 1 / (1 + kWhitening * std::max(0.0f, m - 1));
   const Rgb grey{f, f, f};
-  return grey + (scaled - grey) * saturation;
+  return grey + (c * (f / m) - grey) * kept;
 }
 
 float exposure_of_stops(double stops) { return float(std::exp2(stops)); }

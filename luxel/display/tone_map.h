@@ -12,8 +12,8 @@
 namespace luxel::display {
 
 /// The factor that brings a percentile of luminance over pixels with A > 0 (all pixels when there
-/// is no alpha) to 0.6; 1 for a black picture. Where so many pixels are black that the percentile
-/// is, the black ones do not count. `percentile` in [0, 100].
+/// is no alpha, or none of these has light) to 0.6; 1 for a black picture. Where so many pixels are
+/// black that the percentile is, the black ones do not count. `percentile` in [0, 100].
 float auto_exposure(const image::Image& radiance, double percentile = 90);
 
 /// The factor that a viewer would choose: auto_exposure(), but where much of the picture is far
@@ -28,9 +28,9 @@ float exposure_of_stops(double stops);
 // Curves: exposed linear radiance to linear display values in [0, 1]; negative light is black, and
 // no channel gets darker when the exposure grows.
 
-/// Colours whose channels are all at most 0.5 stay as they are, brighter ones go over a smooth
-/// shoulder that never clips, applied to luminance so that hues stay, bright colours moving to
-/// white.
+/// Colours whose channels are all at most 0.5 stay as they are. The largest channel of brighter
+/// ones goes over a smooth shoulder that never clips, and the others with it, so that hue and
+/// saturation stay; what is brighter than 1 moves slowly to white.
 Rgb compress(Rgb exposed);
 
 /// c / (k + c) in every channel, k > 0. [Moreno05, section 4.4.2] The paper's k of 0.1 to 0.02 is a

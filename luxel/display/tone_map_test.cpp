@@ -81,6 +81,19 @@ TEST(Compress, BrightColoursMoveToWhite) {
   EXPECT_LT(saturation(compress({1000, 100, 100})), 0.01f);
 }
 
+// Up to white, a colour is the one that it was: brown is no salmon, and red has no green or blue.
+TEST(Compress, KeepsTheSaturation) {
+  for (const Rgb c : {Rgb{0.139f, 0.048f, 0.015f}, Rgb{0.8f, 0, 0}, Rgb{0.1f, 0.2f, 1}})
+    for (const float level : {0.3f, 0.7f, 1.0f}) {
+      const Rgb in = c * (level / max_component(c)), out = compress(in);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(out[k] / max_component(out), in[k] / level, 1e-6f) << k << " at " << level;
+    }
+  // Lanterns keep a part of their colour, by 1 / (1 + 0.15 (m - 1)): 1.9 times of red over green.
+  const Rgb lantern = compress({10, 1, 1});
+  EXPECT_NEAR(1 - lantern.y / lantern.x, 0.9f / 2.35f, 1e-6f);
+}
+
 /// A luminance at several levels through a curve.
 Rgb grey(float v) { return {v, v, v}; }
 
@@ -191,6 +204,15 @@ TEST(AutoExposure, SkipsEmptyPixels) {
   image::Image image = two_tones(50, 50, 1000, 3);
   for (int x = 0; x < 50; ++x) image.at(x, 0)[3] = 0;
   EXPECT_NEAR(auto_exposure(image), 0.2f, 1e-6f);
+}
+
+// A picture of nothing, or of what is black, shows the sky behind it.
+TEST(AutoExposure, IsForTheSkyWhereNoSurfaceHasLight) {
+  image::Image image = two_tones(50, 50, 1000, 0);
+  for (int x = 0; x < 50; ++x) image.at(x, 0)[3] = 0;
+  EXPECT_NEAR(auto_exposure(image), 0.6f / 1000, 1e-9f);
+  for (int x = 50; x < 100; ++x) image.at(x, 0)[3] = 0;
+  EXPECT_NEAR(readable_exposure(image), 0.6f / 1000, 1e-9f);
 }
 
 TEST(AutoExposure, BlackPicturesAndNearlyBlackOnes) {

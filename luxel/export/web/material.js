@@ -11,13 +11,10 @@ float shoulder(float x) {
 }
 vec3 compress(vec3 exposed) {
   vec3 c = clamp(exposed, 0.0, 1e18);
-  float y = dot(c, vec3(0.2126, 0.7152, 0.0722));
-  if (!(y > 0.0)) return vec3(0.0);
-  float f = shoulder(y);
-  vec3 scaled = c * (f / y);
-  float room = 1.0 - f, wanted = max(max(scaled.r, scaled.g), scaled.b) - f;
-  if (wanted <= 0.5 * room) return scaled;
-  return f + (scaled - f) * (room * shoulder(wanted / room) / wanted);
+  float m = max(max(c.r, c.g), c.b);
+  if (!(m > 0.0)) return vec3(0.0);
+  float f = shoulder(m), kept = 1.0 / (1.0 + 0.15 * max(0.0, m - 1.0));
+  return f + (c * (f / m) - f) * kept;
 }
 vec3 srgb(vec3 c) {
   return mix(1.055 * pow(max(c, 1e-9), vec3(1.0 / 2.4)) - 0.055, 12.92 * c,

@@ -18,13 +18,10 @@ float shoulder(float x) {
 }
 
 vec3 compress(vec3 c) {
-  float y = luminance(c);
-  if (!(y > 0)) return vec3(0);
-  float f = shoulder(y);
-  vec3 scaled = c * (f / y);
-  float room = 1 - f, wanted = max(max(scaled.r, scaled.g), scaled.b) - f;
-  if (wanted <= 0.5 * room) return scaled;
-  return f + (scaled - f) * (room * shoulder(wanted / room) / wanted);
+  float m = max(max(c.r, c.g), c.b);
+  if (!(m > 0)) return vec3(0);
+  float f = shoulder(m), kept = 1 / (1 + 0.15 * max(0, m - 1));
+  return f + (c * (f / m) - f) * kept;
 }
 
 vec3 on_curve(vec3 c) {

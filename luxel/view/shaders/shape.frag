@@ -9,8 +9,6 @@ layout(location = 0) out vec4 seen;
 
 const float brightest = 0.9;  // linear: more would outshine what is beside it in a pixel
 
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
-
 float before_shoulder(float y) {
   const float a = 0.5;
   if (y <= a) return y;
@@ -20,12 +18,10 @@ float before_shoulder(float y) {
 
 // What compress() of screen.frag makes this colour of.
 vec3 before_compress(vec3 c) {
-  float f = luminance(c);
+  float f = max(max(c.r, c.g), c.b);
   if (!(f > 0)) return vec3(0);
-  float room = 1 - f, got = max(max(c.r, c.g), c.b) - f;
-  vec3 scaled = c;
-  if (got > 0.5 * room) scaled = f + (c - f) * (room * before_shoulder(min(got / room, brightest)) / got);
-  return max(scaled, 0) * (before_shoulder(f) / f);
+  float m = before_shoulder(f), kept = 1 / (1 + 0.15 * max(0, m - 1));
+  return max(f + (c - f) / kept, 0) * (m / f);
 }
 
 vec3 linear(vec3 srgb) {

@@ -49,6 +49,17 @@ Status check_held(const light::TexelScene& in, const TexelLight& light) {
   return {};
 }
 
+/// Hidden texels hold 0, whatever their solver found there: the one rule of leaks.md.
+void clear_hidden(TexelLight& light) {
+  const auto clear = [&](auto& values) {
+    for (size_t i = 0; i < std::min(values.size(), light.hidden.size()); ++i)
+      if (light.hidden[i]) values[i] = {};
+  };
+  clear(light.irradiance), clear(light.variance);
+  clear(light.direct), clear(light.direct_variance);
+  for (std::vector<Rgb>& layer : light.layer_irradiance) clear(layer);
+}
+
 Status solve(const BakeSettings& settings, const light::TexelScene& input,
              const SolveStores& stores, const SolveObserver& observer, Bake& bake,
              Progress& progress) {
@@ -59,6 +70,7 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
         "(KHR_materials_diffuse_transmission), so they are too dark; use gather or reference",
         settings.solver));
   LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
+  clear_hidden(bake.light);
   LUXEL_TRY_STATUS(check_held(input, bake.light));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};

@@ -109,5 +109,85 @@ TEST(BakeScene, WhatIsNotLightmappedStillReflects) {
               0.15f * (whole.floor.x - whole.floor.y));
 }
 
+/// A Cornell box of 1 m, open towards +Z, with a lamp below its ceiling and a block on its floor,
+/// sides and underside closed. Its TEXCOORD_1 gives each quad one of 4 x 4 cells, with a margin of
+/// kMargin of it around, so that texels of the floor go on under the block.
+constexpr float kMargin = 1.0f / 16;
+constexpr float kBlock_m = 0.33f, kBlockHeight_m = 0.4f;  // half its width
+scene::Scene box_with_uv1() {
+  scene::Scene scene;
+  const uint32_t white = scene::add_material(scene, "white", {0.7f, 0.7f, 0.7f});
+  const uint32_t red = scene::add_material(scene, "red", {0.6f, 0.1f, 0.1f});
+  const uint32_t lamp = scene::add_material(scene, "lamp", {0, 0, 0}, {10, 10, 10});
+  scene::Mesh mesh;
+  mesh.name = "box";
+  const auto add = [&](const scene::Quad& quad, uint32_t material) {
+    const auto first = uint32_t(mesh.positions.size()), cell = first / 4;
+    const Vec2 corners[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (uint32_t k = 0; k < 4; ++k) {
+      const Vec2 at = Vec2{kMargin, kMargin} + corners[k] * (1 - 2 * kMargin);
+      mesh.positions.push_back(quad[k]);
+      mesh.uv1.push_back((Vec2{float(cell % 4), float(cell / 4)} + at) * 0.25f);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.triangle_material.insert(mesh.triangle_material.end(), 2, material);
+  };
+  const float h = 0.5f, b = kBlock_m, top = kBlockHeight_m, l = 0.15f;
+  add({Vec3{-h, 0, h}, {h, 0, h}, {h, 0, -h}, {-h, 0, -h}}, white);    // floor
+  add({Vec3{-h, 1, -h}, {h, 1, -h}, {h, 1, h}, {-h, 1, h}}, white);    // ceiling
+  add({Vec3{-h, 0, -h}, {h, 0, -h}, {h, 1, -h}, {-h, 1, -h}}, white);  // back
+  add({Vec3{-h, 0, h}, {-h, 0, -h}, {-h, 1, -h}, {-h, 1, h}}, red);    // left
+  add({Vec3{h, 0, -h}, {h, 0, h}, {h, 1, h}, {h, 1, -h}}, white);      // right
+  add({Vec3{-l, 0.99f, -l}, {l, 0.99f, -l}, {l, 0.99f, l}, {-l, 0.99f, l}}, lamp);
+  add({Vec3{-b, top, b}, {b, top, b}, {b, top, -b}, {-b, top, -b}}, white);
+  add({Vec3{-b, 0, -b}, {b, 0, -b}, {b, 0, b}, {-b, 0, b}}, white);  // underside
+  add({Vec3{-b, 0, b}, {b, 0, b}, {b, top, b}, {-b, top, b}}, white);
+  add({Vec3{b, 0, -b}, {-b, 0, -b}, {-b, top, -b}, {b, top, -b}}, white);
+  add({Vec3{b, 0, b}, {b, 0, -b}, {b, top, -b}, {b, top, b}}, white);
+  add({Vec3{-b, 0, -b}, {-b, 0, b}, {-b, top, b}, {-b, top, -b}}, white);
+  scene::place(scene, std::move(mesh));
+  return scene;
+}
+
+// One rule for all solvers: what lies under the block is hidden and holds 0, but for two rings next
+// to what is open, which are filled from there. 64 texels are 4 x 14 of the floor, 7 cm each.
+TEST(BakeScene, HiddenTexelsHoldNothingWithAnySolver) {
+  const float texel_m = 1 / (16 * (1 - 2 * kMargin));
+  std::vector<uint8_t> hidden;
+  for (const char* const solver : {"gather", "matrix", "hemicube", "hierarchical", "reference"}) {
+    SCOPED_TRACE(solver);
+    BakeSettings settings = small();
+    settings.resolution = 64, settings.solver = solver;
+    Progress progress;
+    const Result<Bake> bake = bake_scene(box_with_uv1(), settings, progress);
+    ASSERT_TRUE(bake) << bake.error().message;
+    ASSERT_TRUE(bake->atlas.kept);
+    int deep = 0, filled = 0;
+    for (size_t i = 0; i < bake->map.texels.size(); ++i) {
+      const scene::SurfacePoint& p = bake->map.texels[i].sample;
+      if (p.triangle > 1) continue;
+      const Vec3 at = scene::world_position(bake->scene, p);
+      const float inside_m = kBlock_m - std::max(std::abs(at.x), std::abs(at.z));
+      const Rgb e = bake->light.irradiance[i];
+      if (inside_m < -texel_m) {
+        EXPECT_FALSE(bake->light.hidden[i]);
+        EXPECT_GT(luminance(e), 0) << at.x << " " << at.z;
+      } else if (inside_m > 3 * texel_m) {
+        EXPECT_TRUE(bake->light.hidden[i]);
+        EXPECT_EQ(e, Rgb{}) << at.x << " " << at.z;
+        ++deep;
+      } else if (bake->light.hidden[i] && inside_m < texel_m) {
+        EXPECT_GT(luminance(e), 0) << at.x << " " << at.z;
+        ++filled;
+      }
+    }
+    EXPECT_GT(deep, 4);
+    EXPECT_GT(filled, 20);
+    if (hidden.empty()) hidden = bake->light.hidden;
+    EXPECT_EQ(hidden, bake->light.hidden);
+  }
+}
+
 }  // namespace
 }  // namespace luxel::pipeline

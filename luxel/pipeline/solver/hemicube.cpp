@@ -14,6 +14,7 @@
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/solver/vertex_lit.h"
+#include "luxel/transport/back_faces.h"
 #include "luxel/transport/covers.h"
 
 namespace luxel::pipeline {
@@ -29,15 +30,6 @@ constexpr double kMaxElements = 1 << 26;
 /// each of --direct-samples, as the help of that option says.
 constexpr int kShadowRaysPerSample = 4, kMostShadowRaysOfElement = 65535;
 
-/// Whether the field has no light of its own at a texel.
-bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
-  const hemicube::MeshPoint place = hemicube::locate(s.field.mesh, p);
-  if (s.field.receivers.kind == hemicube::ElementKind::triangle)
-    return s.enclosed[s.field.receivers.leaf_of_node[place.node]];
-  const auto& v = s.field.mesh.nodes[place.node].vertex;
-  return s.enclosed[v[0]] && s.enclosed[v[1]] && s.enclosed[v[2]];
-}
-
 /// A covered texel gets what the field has around through what is open of it. `cover_size_m`: by
 /// which places are covered (transport::open_share).
 TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution& solution,
@@ -45,13 +37,12 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
   TexelLight out;
   const atlas::TexelMap& map = in.map;
   const std::vector<float> open = transport::open_shares(in.tracer, in.elements, cover_size_m);
-  out.irradiance.resize(map.texels.size()), out.hidden.resize(map.texels.size());
+  out.irradiance.resize(map.texels.size());
   parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
+    for (size_t i = begin; i < end; ++i)
       out.irradiance[i] = hemicube::irradiance_at(solution.field, map.texels[i].sample) * open[i];
-      out.hidden[i] = is_hidden_at(solution, map.texels[i].sample);
-    }
   });
+  out.hidden = transport::find_enclosed(in.scene, in.tracer, in.elements);
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   out.rays = solution.rays, out.sweeps = solution.sweeps;
   out.scratch_bytes = solution.row_bytes_in_file;

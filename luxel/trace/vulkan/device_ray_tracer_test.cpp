@@ -8,6 +8,7 @@
 #include "luxel/gpu/device_test_support.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/sides.h"
+#include "luxel/trace/surface_starts_test_support.h"
 
 namespace luxel::trace {
 namespace {
@@ -114,6 +115,18 @@ TEST_P(DeviceRays, MeetWhatTheProcessorsMeet) {
     });
     EXPECT_GT(met, rays.size() / 2) << file;
     EXPECT_LE(other, rays.size() / 1000) << file;
+  }
+}
+
+// As OffSurface.LeavesItsQuad has it of the processor: no ray meets the plane that it leaves. Every
+// seventh of its quads.
+TEST_P(DeviceRays, LeaveTheQuadsThatTheyStartFrom) {
+  const std::vector<testing::QuadAndCopy> all = testing::quads_with_copies();
+  for (size_t k = 0; k < all.size(); k += 7) {
+    DeviceRayTracer tracer = built(all[k].scene);
+    const std::vector<Hit> hits = hits_of(tracer, testing::rays_off(all[k]));
+    EXPECT_EQ(std::ranges::count_if(hits, [](const Hit& h) { return h.instance < 2; }), 0)
+        << all[k].name;
   }
 }
 

@@ -108,6 +108,8 @@ TEST_F(PathsOnDevice, AreThoseOfTheProcessor) {
   expect_the_same(scene, {.samples = 150, .seed = 9});
   scene.meshes[1].alphas.assign(scene.meshes[1].positions.size(), 0.1f);
   scene.meshes[1].alphas[0] = 1;
+  for (scene::Material& m : scene.materials)
+    if (m.alpha_mode == scene::AlphaMode::mask) m.emission = {2, 1, 3};
   expect_the_same(scene, {.samples = 150, .seed = 9});
 }
 

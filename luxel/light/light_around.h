@@ -68,7 +68,7 @@ struct Arriving {
 
 /// By rays with the density of the cosine about `normals`, samples of them per place; unbiased but
 /// for what lit.irradiance_at is off by. Spans are of one length; a place on a surface is moved off
-/// it first (trace::offset_origin). Errors: cancelled.
+/// it first (scene::off_surface). Errors: cancelled.
 Result<Arriving> arriving_light(const LitScene& lit, std::span<const Vec3> positions,
                                 std::span<const Vec3> normals, const AroundParams& params,
                                 Progress& progress);

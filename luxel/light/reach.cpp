@@ -21,9 +21,9 @@ constexpr double kDirectionRounding = 1e-6;
 /// worked out in double from floats, exact to some 1e-16.
 constexpr double kParameterRounding = 1e-12;
 
-/// Boxes grow by this share of the largest coordinate of the scene: shadow rays start up to 2^-18
-/// of the scene's diagonal off the surface (trace::offset_origin), which is 3.5 of that coordinate
-/// at most, and meet what is there with the precision of float.
+/// Boxes grow by this share of the largest coordinate of the scene, with where instances lie:
+/// shadow rays start off the surface by up to 2^-21 of it, or of 14 of it where triangles as large
+/// as the scene lean (scene::off_surface), and meet what is there with the precision of float.
 constexpr float kRayRounding = 0x1p-15f;
 
 /// Bright texels that lie wider about their middle come from everywhere.
@@ -125,6 +125,7 @@ class Reach {
     Box3 all = scene::world_bounds(scene);
     for (const Box3& box : boxes)
       if (!box.empty()) all.extend(box.lower), all.extend(box.upper);
+    for (const scene::Instance& i : scene.instances) all.extend(column(i.world_from_object, 3));
     const float margin = kRayRounding * max_component(max(-all.lower, all.upper));
     for (const Box3& box : boxes)
       if (!box.empty()) boxes_.push_back(grown(box, margin));

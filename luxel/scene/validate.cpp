@@ -28,7 +28,7 @@ Result<std::vector<std::string>> validate(Scene& scene, const std::string& file)
   LUXEL_TRY_STATUS(check_numbers(scene, report));
   drop_singular_instances(scene, report);
   drop_zero_area_triangles(scene, report);
-  warn_of_width(scene, report);
+  warn_of_steps(scene, report);
   repair_normals(scene, report);
   clamp_reflectance(scene, report);
   for (const Instance& instance : scene.instances)

@@ -59,9 +59,9 @@ Status check_numbers(Scene& scene, Report& report);
 void drop_singular_instances(Scene& scene, Report& report);
 /// Drops triangles that have no normal, and says why.
 void drop_zero_area_triangles(Scene& scene, Report& report);
-/// Warns where most triangles are smaller than the step by which rays start off surfaces in a scene
-/// of this width, and names the vertex farthest out.
-void warn_of_width(const Scene& scene, Report& report);
+/// Warns where most triangles are smaller than the steps by which rays start off them, and names
+/// the mesh with the largest one.
+void warn_of_steps(const Scene& scene, Report& report);
 void repair_normals(Scene& scene, Report& report);
 void clamp_reflectance(Scene& scene, Report& report);
 

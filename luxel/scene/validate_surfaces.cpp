@@ -7,6 +7,7 @@
 #include "luxel/base/vec_double.h"
 #include "luxel/image/color.h"
 #include "luxel/scene/held_range.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
@@ -221,39 +222,25 @@ void drop_zero_area_triangles(Scene& scene, Report& report) {
   warn_of_dropped(flat, tiny, blurred, report);
 }
 
-namespace {
-
-/// "mesh 3 (chair), vertex 7", with the largest coordinate in the world.
-std::string farthest_vertex(const Scene& scene) {
-  double most = -1;
-  std::string out;
-  for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
-      const Vec3 p = transform_point(instance.world_from_object, mesh.positions[v]);
-      if (largest_coordinate(p) <= most) continue;
-      most = largest_coordinate(p);
-      out = fmt::format("{}, vertex {} at ({:.6g}, {:.6g}, {:.6g})",
-                        label("mesh", instance.mesh, mesh.name), v, p.x, p.y, p.z);
-    }
-  }
-  return out;
-}
-
-}  // namespace
-
-void warn_of_width(const Scene& scene, Report& report) {
-  // As trace::offset_origin() does: a step over the rounding of the scene's coordinates.
-  const float width_m = world_bounds(scene).diagonal(), step_m = 0x1p-18f * width_m;
+void warn_of_steps(const Scene& scene, Report& report) {
   size_t all = 0, small = 0;
+  float most_m = 0;  // the largest coordinate that such a triangle is misplaced by a part of
+  uint32_t mesh = 0;
   for (uint32_t i = 0; i < scene.instances.size(); ++i)
-    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t, ++all)
-      if (std::sqrt(area_m2(world_triangle(scene, i, t))) < step_m) ++small;
+    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t, ++all) {
+      const Facet facet = facet_of(scene, i, t);
+      const auto& [a, b, c] = facet.corners;
+      const Vec3 centre = (a + b + c) * (1.0f / 3);
+      if (std::sqrt(area_m2(facet.corners)) >= rounding_m(centre, facet.size_m)) continue;
+      ++small;
+      const float reach_m = std::max(max_component(max(centre, -centre)), facet.size_m);
+      if (reach_m > most_m) most_m = reach_m, mesh = scene.instances[i].mesh;
+    }
   if (2 * small <= all) return;
   report.warn(
-      "{} of {} triangles are smaller than {:.3g} m, the distance at which rays start off surfaces "
-      "in a scene {:.3g} m wide: light will miss them; {} lies farthest out",
-      small, all, step_m, width_m, farthest_vertex(scene));
+      "{} of {} triangles are smaller than the distance at which rays start off them, {:.3g} m for "
+      "{}, which has coordinates of {:.3g} m: light will miss them; move it nearer to the origin",
+      small, all, rounding_m({}, most_m), label("mesh", mesh, scene.meshes[mesh].name), most_m);
 }
 
 void repair_normals(Scene& scene, Report& report) {

@@ -7,6 +7,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/disjoint_sets.h"
 #include "luxel/base/parallel.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/transport/back_faces.h"
 
 namespace luxel::pipeline {
@@ -43,17 +44,26 @@ bool faces_up(const scene::Scene& scene, const trace::Hit& hit) {
   return !hit.back_face || scene::reflects_from_behind(scene::material_at(scene, hit.point()));
 }
 
+/// Rays go on so many times scene::rounding_m() behind a surface that they have met.
+constexpr float kOnBehind = 4;
+
 /// All surfaces down from a point, as far as `depth_m`: calls meet(hit, height).
 template <class Meet>
-void go_down(const trace::RayTracer& tracer, Vec3 from, float depth_m, float skip_m,
+void go_down(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, float depth_m,
              const Meet& meet) {
   float t = 0;
   for (int k = 0; k < kMostSurfaces; ++k) {
     const trace::Hit hit = tracer.closest_hit({from, t, {0, -1, 0}, depth_m});
     if (!hit.found()) return;
     meet(hit, from.y - hit.t);
-    t = hit.t + skip_m;
+    const scene::Facet facet = scene::facet_of(scene, hit.instance, hit.triangle);
+    t = hit.t + kOnBehind * scene::rounding_m(from + Vec3{0, -hit.t, 0}, facet.size_m);
   }
+}
+
+/// How far the first and the last surface of a line lie within its ends.
+float slack_of(const Box3& box) {
+  return kOnBehind * scene::rounding_m(max(-box.lower, box.upper), 0);
 }
 
 struct Survey {
@@ -67,7 +77,7 @@ Survey survey(const scene::Scene& scene, const trace::RayTracer& tracer, double 
   const Box3 box = scene::world_bounds(scene);
   const Vec3 size = box.upper - box.lower;
   const float line_m = std::max(std::max(size.x, size.z) / kLines, 1e-6f);
-  const float skip_m = 1e-5f * box.diagonal();
+  const float slack_m = slack_of(box);
   const int columns = std::max(1, int(std::ceil(size.x / line_m)));
   const int rows = std::max(1, int(std::ceil(size.z / line_m)));
   std::vector<std::vector<Step>> by_row{size_t(rows)};
@@ -75,10 +85,10 @@ Survey survey(const scene::Scene& scene, const trace::RayTracer& tracer, double 
     for (size_t row = begin; row < end; ++row)
       for (int column = 0; column < columns; ++column) {
         // Off the middle, so that lines miss the edges of models made on a raster.
-        const Vec3 from{box.lower.x + (float(column) + 0.487f) * line_m, box.upper.y + skip_m,
+        const Vec3 from{box.lower.x + (float(column) + 0.487f) * line_m, box.upper.y + slack_m,
                         box.lower.z + (float(row) + 0.513f) * line_m};
         float above = INFINITY, highest = -INFINITY;
-        go_down(tracer, from, size.y + 3 * skip_m, skip_m, [&](const trace::Hit& hit, float y) {
+        go_down(scene, tracer, from, size.y + 3 * slack_m, [&](const trace::Hit& hit, float y) {
           const bool room = above - y >= float(plane_m);
           const bool covered = highest - y >= float(plane_m);
           if (faces_up(scene, hit))
@@ -201,7 +211,7 @@ enum class Kept : uint8_t { no_floor, in_solid, in_boundary, yes };
 /// The points of one floor's grid.
 void add_points(const scene::Scene& scene, const trace::RayTracer& tracer, const Level& level,
                 const WorkPlaneParams& params, Floor& floor, Progress& progress) {
-  const float skip_m = 1e-5f * scene::world_bounds(scene).diagonal();
+  const float slack_m = slack_of(scene::world_bounds(scene));
   const size_t cells = size_t(floor.columns) * size_t(floor.rows);
   std::vector<PlanePoint> points(cells);
   std::vector<Kept> kept(cells, Kept::no_floor);
@@ -212,9 +222,9 @@ void add_points(const scene::Scene& scene, const trace::RayTracer& tracer, const
       const Vec3 from{float(floor.x0 + (point.column + 0.5) * floor.cell_x()),
                       float(level.high + params.plane_m),
                       float(floor.z0 + (point.row + 0.5) * floor.cell_z())};
-      const float depth_m = float(level.high - level.low + params.plane_m) + 4 * skip_m;
+      const float depth_m = float(level.high - level.low + params.plane_m) + 4 * slack_m;
       float ground = -INFINITY, bottom = -INFINITY;
-      go_down(tracer, from, depth_m, skip_m, [&](const trace::Hit& hit, float y) {
+      go_down(scene, tracer, from, depth_m, [&](const trace::Hit& hit, float y) {
         const bool here = double(y) >= level.low - 1e-3 && double(y) <= level.high + 1e-3;
         float& highest = faces_up(scene, hit) ? ground : bottom;
         if (here) highest = std::max(highest, y);

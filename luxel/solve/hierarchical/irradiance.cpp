@@ -60,9 +60,11 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   }
   LUXEL_TRY(std::vector<Rgb> out,
             from_punctual_lights(scene, tracer, unlinked.lights, receivers, progress));
-  // A sky of one radiance is what no face hides; one that varies is looked at.
-  const bool count_all =
-      unlinked.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
+  // A sky of one radiance is what no face hides; one that varies, or shines through holes, is
+  // looked at.
+  const bool count_all = unlinked.has_sky && scene.environment.empty() &&
+                         s.faces.size() <= kMostFacesBeforeSky &&
+                         std::ranges::none_of(s.faces.faces, &Face::has_holes);
   const double whole_sky = kPiDouble * double(max_component(scene.background));
   // Faces, and the sky past them.
   const GatheringParams gathered{.limit = limit_of(s, params), .sky = count_all ? whole_sky : 0};

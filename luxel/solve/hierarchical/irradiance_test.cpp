@@ -6,6 +6,7 @@
 #include "luxel/solve/hierarchical/hierarchical_test_support.h"
 #include "luxel/solve/hierarchical/light_mesh.h"
 #include "luxel/solve/hierarchical/surface.h"
+#include "luxel/viewfactor/rectangle_factor.h"
 #include "tests/reference_data.h"
 
 namespace luxel::hierarchical {
@@ -218,6 +219,40 @@ TEST(ExactIrradiance, CountsTheSky) {
                        {{0.001, -1, -1e4}, {0.001, -1, 1e4}, {0.001, 2e4, 1e4}, {0.001, 2e4, -1e4}},
                        dark);
   EXPECT_NEAR(light_at(*solved(scene), {&at, 1}, 1e-6)[0].y, kPi, 1e-3);
+}
+
+/// A black sheet 1 m above y = 0, masked by alphas at its corners that grow along x: of [-1, 1] the
+/// half [0, 1] is there.
+scene::Scene half_a_sheet(Rgb emission) {
+  scene::Scene scene;
+  const uint32_t sheet = scene::add_material(scene, "sheet", {0, 0, 0}, emission);
+  scene::add_rectangle(scene, {-1, 1, -1, 1}, 1, false, sheet);
+  scene.materials[sheet].alpha_mode = scene::AlphaMode::mask;
+  for (const Vec3& p : scene.meshes[0].positions)
+    scene.meshes[0].alphas.push_back(0.5f + 0.5f * p.x);
+  return scene;
+}
+
+// 8,192 rays meet the mask's straight borders to a thousandth: n^-3/4 of half the light.
+TEST(ExactIrradiance, TheSkyComesThroughAMask) {
+  scene::Scene scene = half_a_sheet({});
+  scene.background = {1, 2, 3};
+  const auto s = solved(scene);
+  for (const double x : {-0.8, 0.2, 0.9}) {
+    const Receiver at{{x, 0, 0.1}, {0, 1, 0}, {0, 1, 0}};
+    const double hidden = viewfactor::rectangle_factor(-x, 1 - x, -1.1, 0.9, 1);
+    const Rgb e = light_at(*s, {&at, 1}, 1e-6)[0];
+    EXPECT_NEAR(e.x, kPiDouble * (1 - hidden), 3e-3 * kPiDouble) << x;
+    EXPECT_NEAR(e.z, 3 * e.x, 1e-4) << x;
+  }
+}
+
+// What emits is the half that is there: of the sheet's elements the mean over what they hold.
+TEST(ExactIrradiance, HolesOfVertexAlphaSendNothing) {
+  const auto s = solved(half_a_sheet({1, 1, 1}));
+  const Receiver at{{0, -9, 0}, {0, 1, 0}, {0, 1, 0}};
+  const double all = viewfactor::rectangle_factor(-1, 1, -1, 1, 10);
+  EXPECT_NEAR(light_at(*s, {&at, 1}, 1e-6)[0].x, kPiDouble * all / 2, 0.02 * kPiDouble * all);
 }
 
 }  // namespace

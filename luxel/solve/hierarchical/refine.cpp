@@ -32,9 +32,9 @@ struct Pair {
 
 bool has_texture(const scene::Scene& scene, const Face& face) {
   const scene::Material& m = scene.materials[face.material];
+  const scene::Mesh& mesh = scene.meshes[scene.instances[face.instance].mesh];
   return m.base_color_texture.texture != kNone || m.metallic_texture.texture != kNone ||
-         m.emission_texture.texture != kNone ||
-         !scene.meshes[scene.instances[face.instance].mesh].colors.empty();
+         m.emission_texture.texture != kNone || !mesh.colors.empty() || !mesh.alphas.empty();
 }
 
 /// Another one for each place, whatever is divided first.

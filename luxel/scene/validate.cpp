@@ -39,12 +39,17 @@ Result<std::vector<std::string>> validate(Scene& scene, const std::string& file)
   return nothing_left(report);
 }
 
-bool has_light(const Scene& scene) {
+bool has_lamp_or_sky(const Scene& scene) {
   if (max_component(scene.background) > 0) return true;
   for (const Rgb& l : scene.environment.radiance)
     if (max_component(l) > 0) return true;
   for (const PunctualLight& light : scene.lights)
     if (max_component(light.intensity) > 0) return true;
+  return false;
+}
+
+bool has_light(const Scene& scene) {
+  if (has_lamp_or_sky(scene)) return true;
   for (const Instance& instance : scene.instances)
     for (const uint32_t material : scene.meshes[instance.mesh].triangle_material)
       if (max_component(scene.materials[material].emission) > 0) return true;

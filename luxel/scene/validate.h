@@ -20,6 +20,8 @@ namespace luxel::scene {
 /// triangle), light that is too bright (check_brightness).
 Result<std::vector<std::string>> validate(Scene& scene, const std::string& file);
 
+/// Whether anything shines besides surfaces: lights, background, environment.
+bool has_lamp_or_sky(const Scene& scene);
 /// Whether anything shines: emissive triangles, lights, background, environment.
 bool has_light(const Scene& scene);
 

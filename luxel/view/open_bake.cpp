@@ -42,6 +42,8 @@ pipeline::BakeSettings settings_of_bake(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string light_unit_of(const scene::Scene& scene, const pipeline::BakeSettings& settings) {
+  if (pipeline::is_lit_by_default_day(settings.outside, scene))
+    return pipeline::unit_of_default_day().symbol;
   scene::Scene own = scene;
   own.environment = {}, own.background = {};  // those of the settings, which are asked, too
   return pipeline::unit_of_light(settings.scene, own, settings.outside).symbol;

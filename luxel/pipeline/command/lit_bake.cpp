@@ -106,6 +106,7 @@ Result<std::unique_ptr<LitBake>> read_lit_bake(const std::filesystem::path& scen
   bake->unit = unit_of_light(scene, bake->scene, outside);
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(outside, bake->scene, imported.about_lost_lights));
+  if (is_lit_by_default_day(outside, bake->scene)) bake->unit = unit_of_default_day();
   bake->warnings.insert(bake->warnings.end(), light.begin(), light.end());
   bake->baked.background = bake->scene.background;
   bake->baked.environment = bake->scene.environment;

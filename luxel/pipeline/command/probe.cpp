@@ -64,6 +64,7 @@ Result<scene::Scene> read_probe_scene(const ProbeSettings& s, Probed& out) {
   out.unit = unit_of_light(s.scene, imported.scene, s.outside);
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(s.outside, imported.scene, imported.about_lost_lights));
+  if (is_lit_by_default_day(s.outside, imported.scene)) out.unit = unit_of_default_day();
   out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   return std::move(imported.scene);
 }

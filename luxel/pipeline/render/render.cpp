@@ -127,9 +127,10 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress, const BakeD
   Rendered out;
   out.warnings = std::move(imported.warnings);
   const OutsideLight outside = outside_light_of_bake(s.from, s.outside, out.warnings);
-  const LightUnit unit = unit_of_light(s.scene, imported.scene, outside);
+  LightUnit unit = unit_of_light(s.scene, imported.scene, outside);
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(outside, imported.scene, imported.about_lost_lights));
+  if (is_lit_by_default_day(outside, imported.scene)) unit = unit_of_default_day();
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));

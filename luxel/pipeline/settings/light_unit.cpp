@@ -37,8 +37,9 @@ LightUnit unit_of_light(const std::filesystem::path& file, const scene::Scene& o
   if (!lux.empty()) return {"lux", joined(lux)};
   if (!unknown.empty())
     return {"W/m^2", joined(unknown) + "; if its values are candela and nits, these are lux"};
-  // Nothing shines: add_outside_light() brings kDefaultSky.
-  return {"lux", "the default sky is in lux"};
+  return unit_of_default_day();  // nothing shines
 }
+
+LightUnit unit_of_default_day() { return {"lux", "the default sky is in lux"}; }
 
 }  // namespace luxel::pipeline

@@ -21,5 +21,7 @@ struct LightUnit {
 /// for nits.
 LightUnit unit_of_light(const std::filesystem::path& file, const scene::Scene& own,
                         const OutsideLight& outside);
+/// The unit of E where add_outside_light() brought kDefaultSky (is_lit_by_default_day).
+LightUnit unit_of_default_day();
 
 }  // namespace luxel::pipeline

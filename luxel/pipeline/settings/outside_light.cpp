@@ -6,6 +6,7 @@
 
 #include "luxel/import/environment.h"
 #include "luxel/pipeline/settings/comma_list.h"
+#include "luxel/pipeline/settings/needs_day.h"
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/scene/brightness.h"
 #include "luxel/scene/validate.h"
@@ -226,7 +227,17 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, 
   if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
   if (outside.sky) add_sky(*outside.sky, scene);
   LUXEL_TRY_STATUS(scene::check_brightness(scene, ""));
-  if (scene::has_light(scene)) return warnings;
+  if (scene::has_light(scene)) {
+    const bool is_chosen = outside.background || outside.sun || outside.environment || outside.sky;
+    if (is_chosen || scene::has_lamp_or_sky(scene)) return warnings;
+    LUXEL_TRY(const std::string faint, about_faint_emission(scene));
+    if (faint.empty()) return warnings;
+    add_sky(kDefaultSky, scene);
+    warnings.push_back(fmt::format(
+        "{}, so a clear sky lights it as well, --sky {},{}; --background 0,0,0 leaves it dark",
+        faint, kDefaultSky.azimuth_deg, kDefaultSky.elevation_deg));
+    return warnings;
+  }
   add_sky(kDefaultSky, scene);
   warnings.push_back(fmt::format(
       "the scene has no light, so a clear sky lights it, --sky {},{}; choose other light with "

@@ -58,9 +58,10 @@ inline constexpr SkySetting kDefaultSky{.azimuth_deg = 135, .elevation_deg = 40}
 
 /// Adds profiles of punctual lights, environment or sky, background and sun to a scene; an
 /// environment or a sky without a background beside it replaces the file's background. A scene that
-/// then has no light at all gets kDefaultSky. Returns warnings; the one that says so comes last and
-/// ends in `about_lost_lights` (import::Imported). Errors: those of import::read_environment and
-/// add_profiles.
+/// then has no light at all gets kDefaultSky, and so does one in which only surfaces emit, and too
+/// faintly (about_faint_emission), where no option chose light from outside. Returns warnings; the
+/// one that says so comes last, and where there was no light it ends in `about_lost_lights`
+/// (import::Imported). Errors: those of import::read_environment and add_profiles.
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, scene::Scene& scene,
                                                    std::string_view about_lost_lights = {});
 

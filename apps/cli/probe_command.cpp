@@ -93,16 +93,15 @@ void print_where(const pipeline::Probed& p) {
 
 void print_light(const pipeline::Probed& p, bool by_faces) {
   const float e = luminance(p.irradiance);
-  const std::string error =
-      by_faces ? "" : fmt::format(" +- {:.2g} (one standard error)", p.luminance_error);
-  print_line(fmt::format("{:.5g} {}{}   [{}]", e, p.unit.symbol, error, p.unit.reason));
+  print_line(fmt::format("{:.5g} {} +- {:.2g} (one standard error)   [{}]", e, p.unit.symbol,
+                         p.luminance_error, p.unit.reason));
   print_line(fmt::format("{:28}                         {:>10} {:>10} {:>10}", "", "red", "green",
                          "blue"));
   const auto row = [](const std::string& name, Rgb value) {
     print_line(fmt::format("{:28}                         {}", name, rgb_text(value)));
   };
   row("E", p.irradiance);
-  if (!by_faces) row("standard error of E", p.standard_error);
+  row("standard error of E", p.standard_error);
   if (p.interpolated) row(by_faces ? "E interpolated" : "E of the lightmap", *p.interpolated);
   row("punctual lights, sky", p.punctual_and_background);
 }

@@ -60,7 +60,7 @@ struct Probed {
   Vec3 position{}, normal{};
   float distance_m = 0;               ///< from `at`
   Rgb irradiance;                     ///< E [W/m^2]
-  Rgb standard_error;                 ///< of that, at most; 0 for closed forms
+  Rgb standard_error;                 ///< of that, at most; hierarchical: by paths beside it
   float luminance_error = 0;          ///< standard error of the luminance of E
   std::optional<Rgb> interpolated;    ///< hierarchical: E of its light mesh; bake: of the lightmap
   Rgb punctual_and_background;        ///< the part of E that comes from no surface

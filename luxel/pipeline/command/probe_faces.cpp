@@ -71,14 +71,18 @@ Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solut
   return write_file_atomically(s.output, image::encode_png(display::contact_sheet(tiles)));
 }
 
-/// probe_by_faces(), which ends at the end of --time-budget; only refinement and feedback look at
-/// the clock.
-Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
-  const Clock::time_point start = Clock::now();
+/// Of the time that is left, what paths have to find the error of what the faces bring.
+constexpr double kPathsShare = 0.25;
+constexpr int kMostPathRounds = 10;
+
+/// probe_by_faces() but for its error, which ends at the end of --time-budget; only refinement and
+/// feedback look at the clock. `scene`: becomes what is read.
+Result<Probed> probe_by_solution(const ProbeSettings& s, Clock::time_point start,
+                                 scene::Scene& scene, Progress& progress) {
   // Scene and solution.
   progress.begin("import", 0);
   Probed out;
-  LUXEL_TRY(const scene::Scene scene, read_probe_scene(s, out));
+  LUXEL_TRY(scene, read_probe_scene(s, out));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(scene, tracer, s.hierarchical.solve, progress));
@@ -99,7 +103,7 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
                                                               inwards(face, nearest.position));
   // Its E: exact, and as the mesh of light interpolates it.
   hierarchical::RepresentParams represent;
-  represent.seconds = s.time_budget_s - seconds_since(start);
+  represent.seconds = (1 - kPathsShare) * (s.time_budget_s - seconds_since(start));
   hierarchical::LeftOut left_out;
   LUXEL_TRY(const hierarchical::LightMesh mesh,
             hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, represent,
@@ -130,12 +134,37 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
   return out;
 }
 
+/// Closed forms of radiosities that err: only something else can say by how much. The difference to
+/// paths from the place holds their noise, too, so that it is an upper limit in the mean.
+Status set_error(const ProbeSettings& s, double seconds, const scene::Scene& scene, Probed& out,
+                 Progress& progress) {
+  ProbeSettings paths = s;
+  paths.at = out.position, paths.normal = out.normal, paths.in_air = true;
+  paths.max_error = ProbeSettings().max_error, paths.most_rounds = kMostPathRounds;
+  paths.time_budget_s = seconds;
+  progress.begin("check", 0);
+  LUXEL_TRY(const Probed judge, probe_by_paths(paths, scene, {}, progress));
+  const Rgb off = out.irradiance - judge.irradiance;
+  const Rgb noise = judge.standard_error;
+  out.standard_error = {std::hypot(off.x, noise.x), std::hypot(off.y, noise.y),
+                        std::hypot(off.z, noise.z)};
+  out.luminance_error =
+      std::hypot(luminance(out.irradiance) - luminance(judge.irradiance), judge.luminance_error);
+  return {};
+}
+
 }  // namespace
 
 Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
-  const Deadline deadline(progress, s.time_budget_s);
-  Result<Probed> out = probe_by_solution(s, progress);
-  if (!out && out.error().code == ErrorCode::cancelled && deadline.passed())
+  const Clock::time_point start = Clock::now();
+  scene::Scene scene;
+  std::optional<Deadline> deadline(std::in_place, progress, s.time_budget_s);
+  Result<Probed> out = probe_by_solution(s, start, scene, progress);
+  const bool is_late = deadline->passed();
+  deadline.reset();
+  if (out)
+    LUXEL_TRY_STATUS(set_error(s, s.time_budget_s - seconds_since(start), scene, *out, progress));
+  if (!out && out.error().code == ErrorCode::cancelled && is_late)
     return fail(ErrorCode::out_of_time,
                 "--time-budget {:g} ran out in the stage '{}' before --solver hierarchical had a "
                 "result; give more time or a larger --eps, or leave out --solver",

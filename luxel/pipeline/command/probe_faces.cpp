@@ -139,7 +139,7 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Clock::time_point start
 Status set_error(const ProbeSettings& s, double seconds, const scene::Scene& scene, Probed& out,
                  Progress& progress) {
   ProbeSettings paths = s;
-  paths.at = out.position, paths.normal = out.normal, paths.in_air = true;
+  paths.at = out.position, paths.normal = out.normal;
   paths.max_error = ProbeSettings().max_error, paths.most_rounds = kMostPathRounds;
   paths.time_budget_s = seconds;
   progress.begin("check", 0);

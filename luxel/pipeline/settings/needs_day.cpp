@@ -7,6 +7,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/transport/back_faces.h"
 
@@ -22,15 +23,13 @@ constexpr uint32_t kOpenRays = 8;
 constexpr float kFaintRadiance = 0.01f;
 constexpr double kMostlyBlack = 0.9, kOpenOfBlack = 0.5;
 
-/// SeenPlaces that can be seen, evenly over all surfaces, and what they shine by themselves.
+/// Places that can be seen, evenly over all surfaces, and what they shine by themselves.
 struct SeenPlaces {
   transport::Elements elements;
   std::vector<Rgb> emission;
-  std::vector<Vec3> above;  ///< just off the surface
 };
 
 SeenPlaces seen_places(const scene::Scene& scene, const trace::RayTracer& tracer) {
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
   SeenPlaces out;
   bool from_behind = false;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kSeenPlaces, 1)) {
@@ -40,13 +39,12 @@ SeenPlaces seen_places(const scene::Scene& scene, const trace::RayTracer& tracer
     // The two sides of a thin surface in turn.
     from_behind = material.double_sided && !from_behind;
     if (from_behind) at.normal = -at.normal, at.geometric_normal = -at.geometric_normal;
-    const Vec3 above = trace::offset_origin(at.position, at.geometric_normal, diagonal_m);
-    if (!transport::is_in_the_open(scene, tracer, above, at.geometric_normal, diagonal_m)) continue;
-    out.elements.position.push_back(at.position), out.elements.normal.push_back(at.normal);
+    const Vec3 above = scene::off_surface(scene, p, at.geometric_normal);
+    if (!transport::is_in_the_open(scene, tracer, above, at.geometric_normal)) continue;
+    out.elements.position.push_back(above), out.elements.normal.push_back(at.normal);
     out.elements.geometric_normal.push_back(at.geometric_normal);
     out.elements.reflectance.push_back({});
     out.emission.push_back(material.unlit ? Rgb{1, 1, 1} : scene::emission_at(scene, p));
-    out.above.push_back(above);
   }
   return out;
 }
@@ -56,7 +54,7 @@ bool sees_the_open(const trace::RayTracer& tracer, const SeenPlaces& places, siz
   const Frame frame = frame_around(places.elements.geometric_normal[i]);
   for (uint32_t k = 0; k < kOpenRays; ++k) {
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, hash64(2, i))));
-    rays.push_back({places.above[i], 0, d, INFINITY});
+    rays.push_back({places.elements.position[i], 0, d, INFINITY});
   }
   std::vector<uint8_t> blocked(rays.size());
   tracer.occluded(rays, blocked);
@@ -83,17 +81,17 @@ Result<std::string> about_faint_emission(const scene::Scene& scene) {
   // The bake builds its own later, of split sides: this one is gone by then.
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   const SeenPlaces places = seen_places(scene, tracer);
-  if (places.above.size() < kLeastSeenPlaces) return std::string();
+  if (places.emission.size() < kLeastSeenPlaces) return std::string();
   Progress progress;
   LUXEL_TRY(const light::DirectLight direct,
             light::direct_light(scene, places.elements, light::collect_lights(scene), tracer,
                                 {.samples = kRaysOfDay}, progress));
   size_t black = 0, open = 0;
-  for (size_t i = 0; i < places.above.size(); ++i) {
+  for (size_t i = 0; i < places.emission.size(); ++i) {
     if (max_component(direct.irradiance[i] / kPi + places.emission[i]) >= kFaintRadiance) continue;
     ++black, open += sees_the_open(tracer, places, i);
   }
-  const double share = double(black) / double(places.above.size());
+  const double share = double(black) / double(places.emission.size());
   if (share < kMostlyBlack || double(open) < kOpenOfBlack * double(black)) return std::string();
   return fmt::format("what emits in the scene ({}) leaves {:.0f} % of what can be seen black",
                      names_of_emitters(scene), 100 * share);

@@ -27,8 +27,8 @@ struct Image8 {
 /// decoder's.
 using AllowSize = std::function<Status(uint32_t width, uint32_t height)>;
 
-/// PNG, JPEG (what glTF allows), WebP (its extension EXT_texture_webp), BMP or TGA (what older files
-/// name) to RGBA. `name` is the file or texture named in errors. Errors: another format
+/// PNG, JPEG (what glTF allows), WebP (its extension EXT_texture_webp), BMP or TGA (what older
+/// files name) to RGBA. `name` is the file or texture named in errors. Errors: another format
 /// (unsupported); damaged; too large; not allowed.
 Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name,
                           const AllowSize& allow = {});

@@ -56,7 +56,9 @@ def load(
     path: Path,
     *,
     # begin: load
-    smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 30 for OBJ and PLY, else flat (0 to 180)
+    smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 60 for OBJ, PLY and STL, else flat (0 to 180)
+    up: Value | None = ...,  # Axis that points up in a file that does not say (OBJ, PLY, STL, ...); default: y
+    unit: Value | None = ...,  # Unit of lengths in a file that does not say (OBJ, PLY, STL, ...); default: m
     search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
     trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
     # end: load
@@ -146,7 +148,9 @@ def bake(
     view: Value | None = ...,  # Viewpoint of the picture: interior, exterior, front (looking along -Z), top, or a camera of the scene; default: its first camera, else interior for lit rooms and exterior for other scenes
     max_memory: Value | None = ...,  # Memory limit, e.g. 900M or 1.5G (default: most of the free memory)
     threads: float | None = ...,  # Number of threads; 0: all cores (0 to 1024)
-    smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 30 for OBJ and PLY, else flat (0 to 180)
+    smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 60 for OBJ, PLY and STL, else flat (0 to 180)
+    up: Value | None = ...,  # Axis that points up in a file that does not say (OBJ, PLY, STL, ...); default: y
+    unit: Value | None = ...,  # Unit of lengths in a file that does not say (OBJ, PLY, STL, ...); default: m
     search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
     trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
     background: Value | None = ...,  # Background radiance as r,g,b
@@ -195,7 +199,9 @@ class Relighter:
         bounces: Value | None = ...,  # Number of bounces, or inf; inf
         max_memory: Value | None = ...,  # Memory limit, e.g. 900M or 1.5G (default: most of the free memory)
         seed: float | None = ...,  # Random seed (>= 0); 1
-        smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 30 for OBJ and PLY, else flat (0 to 180)
+        smooth_normals: float | None = ...,  # For meshes without normals: smooth across edges that bend by at most this angle; 0: flat; default: 60 for OBJ, PLY and STL, else flat (0 to 180)
+        up: Value | None = ...,  # Axis that points up in a file that does not say (OBJ, PLY, STL, ...); default: y
+        unit: Value | None = ...,  # Unit of lengths in a file that does not say (OBJ, PLY, STL, ...); default: m
         search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
         trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
         background: Value | None = ...,  # Background radiance as r,g,b

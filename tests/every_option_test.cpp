@@ -172,6 +172,8 @@ Options values_of(const Inputs& in) {
       {"--time-budget", "5"},
       {"--to", "'wall and floor'"},
       {"--trust-paths", ""},
+      {"--unit", "m"},
+      {"--up", "y"},
       {"--tolerance", "0.01"},
       {"--tone-map", "filmic"},
       {"--uv", "unwrap"},

@@ -33,29 +33,6 @@ class CornerSets {
   std::vector<uint32_t> parent_;
 };
 
-/// One triangle's side of an edge, its ends by position and by corner.
-struct HalfEdge {
-  uint32_t low, high;  ///< positions, low < high
-  uint32_t at_low, at_high;
-  bool rises;  ///< from low to high, the triangle's way around
-};
-
-std::vector<HalfEdge> half_edges(const Mesh& mesh, std::span<const uint32_t> place) {
-  std::vector<HalfEdge> out;
-  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (uint32_t k = 0; k < 3; ++k) {
-      const uint32_t a = 3 * t + k, b = 3 * t + (k + 1) % 3;
-      const uint32_t from = place[mesh.triangles[t][k]], to = place[mesh.triangles[t][b - 3 * t]];
-      if (from == to) continue;
-      out.push_back(from < to ? HalfEdge{from, to, a, b, true} : HalfEdge{to, from, b, a, false});
-    }
-  // Equal edges stay in the order of their triangles: the same sets on every machine.
-  std::stable_sort(out.begin(), out.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
-  });
-  return out;
-}
-
 DVec3 corner_of(const Mesh& mesh, uint32_t corner) {
   return to_double(mesh.positions[mesh.triangles[corner / 3][corner % 3]]);
 }
@@ -77,6 +54,30 @@ std::vector<Face> faces_of(const Mesh& mesh) {
   return out;
 }
 
+/// One triangle's side of an edge, its ends by position and by corner.
+struct HalfEdge {
+  uint32_t low, high;  ///< positions, low < high
+  uint32_t at_low, at_high;
+  bool rises;  ///< from low to high, the triangle's way around
+};
+
+std::vector<HalfEdge> half_edges(const Mesh& mesh, std::span<const Face> face,
+                                 std::span<const uint32_t> place) {
+  std::vector<HalfEdge> out;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (uint32_t k = 0; k < 3 && face[t].area > 0; ++k) {
+      const uint32_t a = 3 * t + k, b = 3 * t + (k + 1) % 3;
+      const uint32_t from = place[mesh.triangles[t][k]], to = place[mesh.triangles[t][b - 3 * t]];
+      if (from == to) continue;
+      out.push_back(from < to ? HalfEdge{from, to, a, b, true} : HalfEdge{to, from, b, a, false});
+    }
+  // Equal edges stay in the order of their triangles: the same sets on every machine.
+  std::stable_sort(out.begin(), out.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return a.low != b.low ? a.low < b.low : a.high < b.high;
+  });
+  return out;
+}
+
 /// The angle of a triangle at one of its corners.
 double angle_at(const Mesh& mesh, uint32_t corner) {
   const uint32_t first = corner - corner % 3;
@@ -88,9 +89,9 @@ double angle_at(const Mesh& mesh, uint32_t corner) {
 
 /// `share` tells of two triangles with an edge in common whether they share its normals.
 template <class Share>
-CornerSets corners_that_share(const Mesh& mesh, const Share& share) {
+CornerSets corners_that_share(const Mesh& mesh, std::span<const Face> face, const Share& share) {
   CornerSets sets(3 * mesh.triangles.size());
-  const std::vector<HalfEdge> edges = half_edges(mesh, position_numbers(mesh.positions));
+  const std::vector<HalfEdge> edges = half_edges(mesh, face, position_numbers(mesh.positions));
   for (size_t i = 0; i < edges.size();) {
     size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high)
@@ -170,9 +171,8 @@ void smooth_normals(Mesh& mesh, float crease_rad) {
   const std::vector<Face> face = faces_of(mesh);
   // A fold of just the crease angle is smooth, also when rounding has made it a little sharper.
   const double least_cosine = std::cos(double(crease_rad)) - 1e-6;
-  CornerSets sets = corners_that_share(mesh, [&](uint32_t a, uint32_t b) {
-    return face[a].area > 0 && face[b].area > 0 &&
-           dot(face[a].normal, face[b].normal) >= least_cosine;
+  CornerSets sets = corners_that_share(mesh, face, [&](uint32_t a, uint32_t b) {
+    return dot(face[a].normal, face[b].normal) >= least_cosine;
   });
   set_normals(mesh, face, sets);
 }
@@ -181,10 +181,9 @@ void smooth_normals(Mesh& mesh, std::span<const uint32_t> group) {
   LUXEL_CHECK(group.size() == mesh.triangles.size());
   if (!mesh.normals.empty()) return;
   const std::vector<Face> face = faces_of(mesh);
-  CornerSets sets = corners_that_share(mesh, [&](uint32_t a, uint32_t b) {
+  CornerSets sets = corners_that_share(mesh, face, [&](uint32_t a, uint32_t b) {
     // The halves of a flat face share their corners whatever its group.
-    return face[a].area > 0 && face[b].area > 0 &&
-           ((group[a] == group[b] && group[a] != 0) ||
+    return ((group[a] == group[b] && group[a] != 0) ||
             length(face[a].normal - face[b].normal) < kFlat);
   });
   set_normals(mesh, face, sets);

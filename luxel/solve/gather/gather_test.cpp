@@ -266,7 +266,8 @@ TEST(SlowGather, AFurnaceDoesNotSeeGlassThatLosesNothing) {
   pane.base_color = {0.99f, 0.99f, 0.99f};
   pane.alpha = 0.2f;
   const auto room = lay_out(divided_furnace(0.5f, pane), 64);
-  const Gather result = solve(*room, with_samples(1024));
+  // Rays meet the pane by chance: the worst of 3,200 texels is off by five standard deviations.
+  const Gather result = solve(*room, with_samples(2048));
   // B = pi / (1 - rho) = 2 pi; E = B everywhere. The pane reflects 0.99 of what it covers and tints
   // by 0.998: 4 in 1,000 of what crosses both faces are lost, a few times over.
   for (const Rgb& e : result.irradiance) EXPECT_NEAR(e.x / (2 * kPi), 1, 0.03);

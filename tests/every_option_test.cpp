@@ -39,7 +39,6 @@ const std::vector<std::vector<std::string>> kBesideTheSolver{
      "--probes", "--shadow-mask", "--texels", "--view"},
     {"--background", "--environment", "--json", "--progress-json", "--quiet", "--search-path",
      "--smooth-normals", "--sun", "--trust-paths"},
-    {"--unit", "--up"},
 };
 
 const Options kSmallGather{{"--resolution", "16"}, {"--samples", "4"}, {"--direct-samples", "2"}};

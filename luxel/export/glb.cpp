@@ -109,8 +109,9 @@ size_t append_accessor(Glb& glb, std::span<const std::array<float, 4>> values) {
 
 size_t append_indices(Glb& glb, std::span<const uint32_t> indices) {
   LUXEL_CHECK(!indices.empty());
-  const auto [lowest, highest] = std::minmax_element(indices.begin(), indices.end());
-  const bool narrow = *highest < 65535;  // 65535 itself would restart a strip
+  const auto found = std::minmax_element(indices.begin(), indices.end());
+  const uint32_t lowest = *found.first, highest = *found.second;
+  const bool narrow = highest < 65535;  // 65535 itself would restart a strip
   const std::vector<uint16_t> shorts =
       narrow ? std::vector<uint16_t>(indices.begin(), indices.end()) : std::vector<uint16_t>{};
   const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
@@ -118,7 +119,7 @@ size_t append_indices(Glb& glb, std::span<const uint32_t> indices) {
                      {"count", indices.size()},
                      {"type", "SCALAR"}};
   return find_or_append(glb, bytes, kind, kElementArrayBuffer, 0, [&](json& accessor) {
-    accessor["min"] = {*lowest}, accessor["max"] = {*highest};
+    accessor["min"] = {lowest}, accessor["max"] = {highest};
   });
 }
 

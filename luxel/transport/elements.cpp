@@ -111,7 +111,7 @@ Elements subset(const Elements& elements, std::span<const uint32_t> chosen) {
 namespace {
 
 SmoothPoint smooth_point(const scene::Scene& scene, const BentFacet& facet,
-                         const scene::SurfacePoint& p) {
+                         const scene::SurfacePoint& p, float side) {
   const scene::Triangle3& t = facet.flat.corners;
   const Vec3 at = interpolate(t.a, t.b, t.c, p.at);
   SmoothPoint out{at, {}, scene::shading_normal(scene, p, facet.flat.front), facet.flat.front};
@@ -119,14 +119,15 @@ SmoothPoint smooth_point(const scene::Scene& scene, const BentFacet& facet,
     out.position = lifted(facet, at, p.at);
     if (length(out.position - at) > kNoBulge * facet.size_m) out.geometric_normal = out.normal;
   }
+  out.normal *= side, out.geometric_normal *= side;
   out.start = scene::off_surface(out.position, out.geometric_normal, facet.flat.size_m);
   return out;
 }
 
 }  // namespace
 
-SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
-  return smooth_point(scene, bent_facet(scene, p.instance, p.triangle), p);
+SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p, float side) {
+  return smooth_point(scene, bent_facet(scene, p.instance, p.triangle), p, side);
 }
 
 namespace {
@@ -146,7 +147,7 @@ Elements places_of(const scene::Scene& scene, const atlas::TexelMap& map) {
       // Neighbours in a row mostly lie in one triangle.
       if (i == begin || !in_same_triangle(p, map.texels[i - 1].sample))
         facet = bent_facet(scene, p.instance, p.triangle);
-      const SmoothPoint at = smooth_point(scene, facet, p);
+      const SmoothPoint at = smooth_point(scene, facet, p, 1);
       e.position[i] = at.start, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
     }

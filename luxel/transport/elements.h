@@ -42,15 +42,16 @@ void drop_places(Elements& elements);
 /// Some elements, in the order of `chosen`.
 Elements subset(const Elements& elements, std::span<const uint32_t> chosen);
 
-/// A point of the front side, moved to the smooth surface that vertex normals bend over its
-/// triangle.
+/// A point of one side, the front unless told otherwise, moved to the smooth surface that vertex
+/// normals bend over its triangle.
 struct SmoothPoint {
   Vec3 position;                  ///< on that surface, world [m]
   Vec3 start;                     ///< where rays start, Elements::position
   Vec3 normal, geometric_normal;  ///< as in Elements
 };
-/// The smooth point of a surface point; on the triangle where the mesh has no normals.
-SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p);
+/// The smooth point of a surface point; on the triangle where the mesh has no normals. With a side
+/// of -1 it is that of the back: directions point there, and rays start there.
+SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p, float side = 1);
 
 /// One element per texel of the map, in its order. Where vertex normals say that the surface bulges
 /// over its triangle, the element lies on the bulge and its horizon is that of the shading normal:

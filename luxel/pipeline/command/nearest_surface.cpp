@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "luxel/scene/off_surface.h"
 #include "luxel/transport/elements.h"
 
 namespace luxel::pipeline {
@@ -75,11 +74,9 @@ NearestSurface nearest_surface(const scene::Scene& scene, Vec3 at, std::optional
     }
   }
   if (best.distance_m == INFINITY) return best;
-  const transport::SmoothPoint smooth = transport::smooth_point(scene, best.point);
-  best.position = smooth.position, best.normal = smooth.normal * best_side;
-  best.geometric_normal = smooth.geometric_normal * best_side;
-  const scene::Facet facet = scene::facet_of(scene, best.point.instance, best.point.triangle);
-  best.start = scene::off_surface(best.position, best.geometric_normal, facet.size_m);
+  const transport::SmoothPoint smooth = transport::smooth_point(scene, best.point, best_side);
+  best.position = smooth.position, best.start = smooth.start;
+  best.normal = smooth.normal, best.geometric_normal = smooth.geometric_normal;
   return best;
 }
 

@@ -11,7 +11,6 @@
 #include "luxel/pipeline/command/nearest_surface.h"
 #include "luxel/pipeline/command/probe.h"
 #include "luxel/reference/path_tracer.h"
-#include "luxel/scene/off_surface.h"
 #include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -181,12 +180,10 @@ Result<std::vector<Rgb>> reflected_by_paths(const ProbeSettings& s, const scene:
   for (size_t k = 0; k < count; ++k) {
     const trace::Hit& hit = look.hits[k];
     if (!hit.found() || is_dark_back(scene, hit)) continue;
-    const transport::SmoothPoint at = transport::smooth_point(scene, hit.point());
-    const float side = hit.back_face ? -1.0f : 1.0f;
-    const scene::Facet facet = scene::facet_of(scene, hit.instance, hit.triangle);
-    rays.push_back(k), normals.push_back(at.normal * side);
-    geometric_normals.push_back(at.geometric_normal * side);
-    positions.push_back(scene::off_surface(at.position, geometric_normals.back(), facet.size_m));
+    const transport::SmoothPoint at =
+        transport::smooth_point(scene, hit.point(), hit.back_face ? -1.0f : 1.0f);
+    rays.push_back(k), positions.push_back(at.start);
+    normals.push_back(at.normal), geometric_normals.push_back(at.geometric_normal);
   }
   LUXEL_TRY(const reference::TexelPaths paths,
             reference::irradiance_by_paths(scene, {positions, normals, geometric_normals}, tracer,

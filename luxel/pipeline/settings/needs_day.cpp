@@ -7,7 +7,6 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/light/direct_light.h"
-#include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/transport/back_faces.h"
 
@@ -35,13 +34,11 @@ SeenPlaces seen_places(const scene::Scene& scene, const trace::RayTracer& tracer
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kSeenPlaces, 1)) {
     const scene::Material& material = scene::material_at(scene, p);
     if (!scene::is_solid_at(scene, p)) continue;
-    transport::SmoothPoint at = transport::smooth_point(scene, p);
     // The two sides of a thin surface in turn.
     from_behind = material.double_sided && !from_behind;
-    if (from_behind) at.normal = -at.normal, at.geometric_normal = -at.geometric_normal;
-    const Vec3 above = scene::off_surface(scene, p, at.geometric_normal);
-    if (!transport::is_in_the_open(scene, tracer, above, at.geometric_normal)) continue;
-    out.elements.position.push_back(above), out.elements.normal.push_back(at.normal);
+    const transport::SmoothPoint at = transport::smooth_point(scene, p, from_behind ? -1.0f : 1.0f);
+    if (!transport::is_in_the_open(scene, tracer, at.start, at.geometric_normal)) continue;
+    out.elements.position.push_back(at.start), out.elements.normal.push_back(at.normal);
     out.elements.geometric_normal.push_back(at.geometric_normal);
     out.elements.reflectance.push_back({});
     out.emission.push_back(material.unlit ? Rgb{1, 1, 1} : scene::emission_at(scene, p));

@@ -21,9 +21,10 @@ constexpr float kSureThroughput = 0.1f;
 /// The side of the surface that a ray has met; the back is that of the flat triangle.
 transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit) {
   if (!hit.back_face) return transport::smooth_point(scene, hit.point());
-  const Vec3 back = -scene::front_normal(scene, hit.instance, hit.triangle);
-  return {scene::world_position(scene, hit.point()), scene::off_surface(scene, hit.point(), back),
-          -scene::shading_normal(scene, hit.point()), back};
+  const scene::Facet facet = scene::facet_of(scene, hit.instance, hit.triangle);
+  const Vec3 back = -facet.front;
+  return {scene::world_position(scene, hit.point()), scene::off_surface(facet, hit.at, back),
+          -scene::shading_normal(scene, hit.point(), facet.front), back};
 }
 
 /// A path that brings nothing more.

@@ -2,6 +2,8 @@
 // large, not allowed.
 #pragma once
 
+#include <optional>
+
 #include "luxel/image/codec.h"
 
 namespace luxel::image {
@@ -31,6 +33,10 @@ Result<Image8> decode_bmp(std::span<const std::byte> bytes, std::string_view nam
 bool is_tga(std::span<const std::byte> bytes);
 Result<Image8> decode_tga(std::span<const std::byte> bytes, std::string_view name,
                           const AllowSize& allow);
+
+/// The pixels of a file as stb finds them, which has passed every check that stb does not make
+/// itself. None: stbi_failure_reason() says why.
+std::optional<Image8> load_with_stb(std::span<const uint8_t> bytes);
 
 /// An error for a side of no pixels or of too many: a header that lies would cost gigabytes.
 Status check_picture_size(uint32_t width, uint32_t height, std::string_view name);

@@ -77,6 +77,15 @@ auto load_rgba(const Load& load, Bytes data, int& width, int& height) {
 
 }  // namespace
 
+std::optional<Image8> load_with_stb(std::span<const uint8_t> bytes) {
+  Image8 image{0, 0, 4, {}};
+  const auto pixels = load_rgba(stbi_load_from_memory, bytes, image.width, image.height);
+  if (pixels == nullptr) return std::nullopt;
+  image.data.assign(pixels.get(),
+                    pixels.get() + size_t(4) * size_t(image.width) * size_t(image.height));
+  return image;
+}
+
 bool is_png(std::span<const std::byte> bytes) {
   return bytes.size() >= kPngMagic.size() &&
          std::memcmp(bytes.data(), kPngMagic.data(), kPngMagic.size()) == 0;
@@ -85,12 +94,9 @@ bool is_png(std::span<const std::byte> bytes) {
 Result<Image8> decode_png(std::span<const std::byte> bytes, std::string_view name,
                           const AllowSize& allow) {
   LUXEL_TRY(const Bytes data, checked(bytes, name, allow));
-  Image8 image{0, 0, 4, {}};
-  const auto pixels = load_rgba(stbi_load_from_memory, data, image.width, image.height);
-  if (pixels == nullptr) return Failure{undecodable(name)};
-  image.data.assign(pixels.get(),
-                    pixels.get() + size_t(4) * size_t(image.width) * size_t(image.height));
-  return image;
+  std::optional<Image8> image = load_with_stb(data);
+  if (!image) return Failure{undecodable(name)};
+  return *std::move(image);
 }
 
 Result<Image> decode_png_values(std::span<const std::byte> bytes, std::string_view name) {

@@ -26,16 +26,11 @@ Failure ends_early(const char* kind, std::string_view name) {
 }
 
 Result<Image8> decode(Bytes bytes, const char* kind, std::string_view name) {
-  Image8 image{0, 0, 4, {}};
-  int channels = 0;
-  stbi_uc* const pixels = stbi_load_from_memory(bytes.data(), int(bytes.size()), &image.width,
-                                                &image.height, &channels, 4);
-  if (pixels == nullptr)
+  std::optional<Image8> image = load_with_stb(bytes);
+  if (!image)
     return fail(ErrorCode::unsupported, "{}: cannot decode the {} picture: {}; convert it to PNG",
                 name, kind, stbi_failure_reason());
-  image.data.assign(pixels, pixels + size_t(4) * size_t(image.width) * size_t(image.height));
-  stbi_image_free(pixels);
-  return image;
+  return *std::move(image);
 }
 
 // BMP: 14 bytes with the place of the pixels, a header with its own size, a palette, pixels.
@@ -72,17 +67,17 @@ bool is_depth(size_t bits) {
   return bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32;
 }
 
-/// The bytes of `count` pixels, packed by runs: a byte with how many less 1, its highest bit set
-/// where one pixel stands for all of them.
-std::optional<size_t> bytes_of_runs(Bytes in, size_t count, size_t pixel_bytes) {
+/// True where `count` pixels are there, packed by runs: a byte with how many less 1, its highest
+/// bit set where one pixel stands for all of them.
+bool holds_runs(Bytes in, size_t count, size_t pixel_bytes) {
   size_t at = 0;
   for (size_t done = 0; done < count;) {
-    if (at >= in.size()) return std::nullopt;
+    if (at >= in.size()) return false;
     const size_t length = size_t(in[at] & 127) + 1;
     at += 1 + ((in[at] & 128) != 0 ? 1 : length) * pixel_bytes;
     done += length;
   }
-  return at <= in.size() ? std::optional(at) : std::nullopt;
+  return at <= in.size();
 }
 
 }  // namespace
@@ -138,7 +133,7 @@ Result<Image8> decode_tga(std::span<const std::byte> encoded, std::string_view n
   const size_t start = kTgaStart + tga.text_bytes + palette;
   if (start > file.size() || file.size() > size_t(INT32_MAX)) return ends_early("TGA", name);
   const Bytes pixels = file.subspan(start);
-  const bool is_whole = (tga.kind & 8) != 0 ? bytes_of_runs(pixels, count, pixel_bytes).has_value()
+  const bool is_whole = (tga.kind & 8) != 0 ? holds_runs(pixels, count, pixel_bytes)
                                             : pixels.size() / pixel_bytes >= count;
   if (!is_whole) return ends_early("TGA", name);
   if (allow) LUXEL_TRY_STATUS(allow(tga.width, tga.height));

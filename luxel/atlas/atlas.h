@@ -57,7 +57,7 @@ struct TexelMap {
   std::vector<uint32_t> texel_at;  ///< resolution^2 entries: index into texels, or kNone
 };
 
-/// Whether TEXCOORD_1 is the lightmap's: where it is a layout (why_no_layout), always, never.
+/// The use of TEXCOORD_1 for the lightmap: where it is a layout (why_no_layout), always, never.
 enum class UvMode : uint8_t { automatic, keep, unwrap };
 /// How many pages: so many; as many as it takes; one for each instance.
 enum class PageMode : uint8_t { fixed, automatic, per_instance };

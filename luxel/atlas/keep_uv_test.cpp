@@ -83,7 +83,7 @@ TEST(KeepUv, AutomaticKeepsWhatIsValidAndUnwrapsTheRest) {
   EXPECT_EQ(unwrapped->chart_count, 2u);
 }
 
-/// What automatic says of a scene whose TEXCOORD_1 can be drawn; empty: it is kept.
+/// The reason of automatic not to keep a TEXCOORD_1 that can be drawn; empty: it is kept.
 std::string why_replaced(const scene::Scene& scene) {
   Progress progress;
   const Result<Atlas> kept = make(scene, UvMode::keep);

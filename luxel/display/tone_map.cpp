@@ -44,8 +44,8 @@ float percentile_of(std::vector<float>& values, double percentile) {
   return values[rank];
 }
 
-/// Of the pixels that show a surface; of all, where none of these has light: the sky is what there
-/// is to see.
+/// Luminances of the pixels that show a surface; of all, where none of these has light: the sky is
+/// there to see.
 std::vector<float> luminances(const image::Image& radiance) {
   std::vector<float> all, surfaces;
   for (int y = 0; y < radiance.height; ++y)

@@ -27,7 +27,7 @@ void append_u32(std::vector<std::byte>& bytes, uint32_t value) {
   bytes.insert(bytes.end(), raw.begin(), raw.end());
 }
 
-/// Whether an accessor holds these bytes.
+/// True where an accessor holds these bytes.
 bool holds(const Glb& glb, const json& accessor, const json& kind,
            std::span<const std::byte> bytes) {
   for (const auto& [key, value] : kind.items())

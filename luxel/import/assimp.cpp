@@ -80,7 +80,7 @@ void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bo
   }
 }
 
-/// What a format means by what its files hold.
+/// Meanings that a format gives to parts of its files.
 struct Habits {
   bool srgb_colors = false;    ///< vertex colors are display values
   bool facet_normals = false;  ///< normals are those of flat triangles, or 0: they say nothing

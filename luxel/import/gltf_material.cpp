@@ -84,8 +84,7 @@ int choose_first_set(GltfReader& reader, const std::string& user, scene::Materia
   }
   if (is_odd)
     reader.warn(
-        "{} uses more than two sets of texture coordinates; TEXCOORD_1 and TEXCOORD_{} are "
-        "read",
+        "{} uses more than two sets of texture coordinates; TEXCOORD_1 and TEXCOORD_{} are read",
         user, *first);
   return first.value_or(0);
 }

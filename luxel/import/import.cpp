@@ -39,8 +39,7 @@ Result<Mat34> world_from_file(const SourceFile& source, const ImportParams& para
     if (source.extension == stating)
       return fail(
           ErrorCode::bad_setting,
-          "{}: {} files state their unit and the axis that points up; leave --unit and --up "
-          "out",
+          "{}: {} files state their unit and the axis that points up; leave --unit and --up out",
           source.name, stating);
   const float unit = params.unit_m.value_or(1);
   if (params.up != Up::z) return Mat34{{{{unit, 0, 0, 0}, {0, unit, 0, 0}, {0, 0, unit, 0}}}};

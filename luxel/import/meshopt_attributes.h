@@ -1,4 +1,4 @@
-// What KHR_meshopt_compression has beyond EXT_meshopt_compression: attributes of format 1 and the
+// KHR_meshopt_compression beyond EXT_meshopt_compression: attributes of format 1 and the
 // filter COLOR. Debian's meshoptimizer knows neither. For the glTF reader only.
 #pragma once
 

@@ -11,7 +11,7 @@
 
 namespace luxel::import {
 
-/// What a material is without one of its pictures: the end of a warning.
+/// Ends of warnings: a material without one of its pictures.
 inline constexpr std::string_view kColorInstead = "the material's colour is used",
                                   kNoHoles = "the material's colour is used, without holes",
                                   kNoGlow = "it does not glow", kNoMetal = "it is no metal",

@@ -154,11 +154,13 @@ TEST(Pages, FoldersAreCompared) {
   EXPECT_EQ(texels, by_page);
 }
 
+// The background is one that both show: the preview has a grey of its own where there is none.
 TEST(Pages, PreviewIsWhatTheFilesShow) {
   const ScratchFolder s;
   const fs::path folder = s.path / "b", file = s.path / "p.png";
   ASSERT_EQ(bake_for_pages("cornell-box.glb", folder,
-                           "--resolution 96 --samples 32 --pages 3 --uv unwrap")
+                           "--resolution 96 --samples 32 --pages 3 --uv unwrap "
+                           "--background 0.1,0.1,0.1")
                 .code,
             0);
   const nlohmann::json view = about(folder)["preview"];

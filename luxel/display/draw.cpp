@@ -100,6 +100,12 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
     const float most = params.brightest_behind;
     return min(scene::smooth_surroundings_towards(scene, direction), Rgb{most, most, most});
   };
+  const auto hits_of = [&](std::span<trace::Ray> rays) {
+    if (!params.backs) return trace::visible_hits(scene, tracer, rays);
+    std::vector<trace::Hit> hits(rays.size());
+    tracer.closest_hits(rays, hits, trace::Packets::bundles);
+    return hits;
+  };
   image::Image picture(params.width, params.height, 4);
   std::vector<uint32_t> pixels(size_t(params.width) * size_t(params.height));
   std::iota(pixels.begin(), pixels.end(), 0);
@@ -109,7 +115,7 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
       if (progress.cancelled()) return;
       const std::span some = std::span(pixels).subspan(begin, end - begin);
       std::vector<trace::Ray> rays = rays_of(through, some, per_axis);
-      const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
+      const std::vector<trace::Hit> hits = hits_of(rays);
       for (size_t i = 0; i < some.size(); ++i)
         write_pixel(std::span(hits).subspan(i * per_pixel, per_pixel),
                     std::span(rays).subspan(i * per_pixel, per_pixel), seen_at, behind,

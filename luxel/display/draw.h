@@ -17,6 +17,7 @@ struct DrawParams {
   int width = 960, height = 720;
   int samples_per_axis = 3;           ///< n x n rays per pixel that differs from a neighbour
   float brightest_behind = INFINITY;  ///< what is seen of the surroundings is cut off there
+  bool backs = false;                 ///< of one-sided materials are seen, too
 };
 
 /// How the surface that a camera's ray met looks from there. Called by many threads at once.

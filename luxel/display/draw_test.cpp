@@ -88,6 +88,15 @@ TEST(Draw, BackFacesOfOneSidedMaterialsAreInvisible) {
     for (int x = 0; x < 8; ++x) EXPECT_FLOAT_EQ(picture.rgb(x, y).y, 0.5f / kPi);
 }
 
+TEST(Draw, BackFacesAreSeenOnDemand) {
+  scene::Scene scene;
+  add_square(scene, {}, {10, 0, 0}, {0, -10, 0}, gray(0.5f));
+  DrawParams params{8, 8, 1};
+  EXPECT_EQ(draw_ok(scene, camera_on_z(5), params).at(4, 4)[3], 0);
+  params.backs = true;
+  EXPECT_EQ(draw_ok(scene, camera_on_z(5), params).at(4, 4)[3], 1);
+}
+
 TEST(Draw, BackFacesOfDoubleSidedMaterialsAreSeen) {
   scene::Scene scene;
   add_square(scene, {}, {10, 0, 0}, {0, 10, 0}, gray(0.5f));

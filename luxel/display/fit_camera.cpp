@@ -164,8 +164,9 @@ std::vector<uint8_t> under_a_roof(const Stage& stage, std::span<const trace::Ray
   return out;
 }
 
-/// What of a view is looked for: light and roofs take more rays than all else.
-enum class LookFor : uint8_t { surfaces, all };
+/// What of a view is looked for: light and roofs take more rays than all else. Backs of one-sided
+/// materials are invisible but for the last.
+enum class LookFor : uint8_t { surfaces, all, backs };
 
 View look(const Stage& stage, const Candidate& candidate, LookFor what,
           std::vector<Seen>& scratch) {
@@ -176,7 +177,11 @@ View look(const Stage& stage, const Candidate& candidate, LookFor what,
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x)
       rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
-  const std::vector<trace::Hit> hits = trace::visible_hits(scene, stage.tracer, rays);
+  std::vector<trace::Hit> hits(rays.size());
+  if (what == LookFor::backs)
+    stage.tracer.closest_hits(rays, hits);
+  else
+    hits = trace::visible_hits(scene, stage.tracer, rays);
   const bool all = what == LookFor::all;
   const std::vector<uint8_t> lit =
       all ? lit_by_sources(scene, stage.tracer, stage.glimpse, rays, hits)
@@ -275,6 +280,11 @@ scene::Camera best_of(const Stage& stage, std::span<const Candidate> candidates)
   std::vector<uint32_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0u);
   const std::vector<double> most = scores_of(stage, candidates, order, LookFor::surfaces);
+  if (std::ranges::max(most) <= 0) {
+    // Nobody can see a front of what is flipped, but can be told so of a picture of its backs.
+    const std::vector<double> backs = scores_of(stage, candidates, order, LookFor::backs);
+    return candidates[size_t(std::ranges::max_element(backs) - backs.begin())].camera;
+  }
   std::ranges::stable_sort(order, [&](uint32_t a, uint32_t b) { return most[a] > most[b]; });
   uint32_t best = order.front();
   double highest = -1;

@@ -210,5 +210,54 @@ TEST(FitCamera, DoesNotDependOnTheUnitOfLength) {
     EXPECT_NEAR(other.world_from_camera.row[i][3] / 64, metres.world_from_camera.row[i][3], 1e-3f);
 }
 
+/// A sheet of 2 x 2 m on the ground: one of both sides, or two that lie on each other.
+Scene sheet(bool two_quads) {
+  Scene scene;
+  const uint32_t m = gray(scene, !two_quads);
+  scene::Mesh mesh;
+  scene::add_quad(mesh, {Vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, m);
+  if (two_quads) scene::add_quad(mesh, {Vec3{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, m);
+  scene::place(scene, std::move(mesh));
+  return scene;
+}
+
+// From both places of a sheet itself, its floor is its ceiling.
+TEST(FitCamera, NeverStandsInASheet) {
+  for (const bool two_quads : {false, true})
+    for (const Viewpoint from : {Viewpoint::automatic, Viewpoint::interior})
+      for (const float thickness : {0.0f, 1e-3f}) {
+        Scene scene = sheet(two_quads);
+        if (thickness > 0) {
+          scene.instances.push_back(scene.instances[0]);
+          scene.instances[1].world_from_object = translation({0, thickness, 0});
+        }
+        add_day(scene, {1, 2, 1});
+        const Vec3 eye = column(fitted(scene, 1.5f, from).world_from_camera, 3);
+        EXPECT_GT(std::abs(eye.y), 0.05f) << two_quads << int(from) << thickness;
+      }
+}
+
+// From inside, a lamp is one bright colour.
+TEST(FitCamera, NeverStandsInALamp) {
+  Scene scene;
+  const uint32_t m = scene::add_material(scene, "glow", {0.5f, 0.5f, 0.5f}, {9, 9, 9});
+  scene.materials[m].double_sided = true;
+  scene::place(scene, scene::sphere("lamp", 1, 32, 16, m));
+  EXPECT_FALSE(from_inside(scene));
+}
+
+// Nobody sees the front of a floor that was wound upside down: the picture is of its back, from
+// where all of it is seen.
+TEST(FitCamera, LooksAtBacksWhereThereAreNoFronts) {
+  Scene scene;
+  scene::add_rectangle(scene, {-1, 1, -1, 1}, 0, false, gray(scene, false));
+  const auto tracer = trace::RayTracer::build(scene);
+  const trace::CameraRays rays(fit_camera(scene, *tracer, 1), 16, 16);
+  int found = 0;
+  for (int i = 0; i < 256; ++i)
+    found += tracer->closest_hit(rays.through(float(i % 16) + 0.5f, float(i / 16) + 0.5f)).found();
+  EXPECT_GT(found, 256 / 4);
+}
+
 }  // namespace
 }  // namespace luxel::display

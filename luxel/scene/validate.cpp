@@ -31,6 +31,7 @@ Result<std::vector<std::string>> validate(Scene& scene, const std::string& file)
   warn_of_steps(scene, report);
   repair_normals(scene, report);
   clamp_reflectance(scene, report);
+  warn_of_transparent(scene, report);
   for (const Instance& instance : scene.instances)
     if (!scene.meshes[instance.mesh].triangles.empty()) {
       LUXEL_TRY_STATUS(check_brightness(scene, file));

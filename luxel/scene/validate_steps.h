@@ -64,5 +64,7 @@ void drop_zero_area_triangles(Scene& scene, Report& report);
 void warn_of_steps(const Scene& scene, Report& report);
 void repair_normals(Scene& scene, Report& report);
 void clamp_reflectance(Scene& scene, Report& report);
+/// Warns of materials that nobody can see because their alpha is 0.
+void warn_of_transparent(const Scene& scene, Report& report);
 
 }  // namespace luxel::scene

@@ -292,4 +292,24 @@ void clamp_reflectance(Scene& scene, Report& report) {
     report.warn("reflectance over {} clamped: {}", kMaxReflectance, listed(clamped));
 }
 
+void warn_of_transparent(const Scene& scene, Report& report) {
+  std::vector<size_t> triangles(scene.materials.size());
+  for (const Instance& instance : scene.instances)
+    for (const uint32_t m : scene.meshes[instance.mesh].triangle_material) ++triangles[m];
+  std::vector<std::string> names;
+  size_t count = 0;
+  for (size_t m = 0; m < scene.materials.size(); ++m) {
+    const Material& material = scene.materials[m];
+    const bool cut = material.alpha_mode == AlphaMode::mask && material.alpha_cutoff > 0;
+    if (triangles[m] == 0 || material.alpha > 0) continue;
+    if (!cut && material.alpha_mode != AlphaMode::blend) continue;
+    names.push_back("'" + material.name + "'"), count += triangles[m];
+  }
+  if (!names.empty())
+    report.warn(
+        "{} triangles of {} are fully transparent (alpha 0, d 0 or Tr 1 in .mtl), so they are "
+        "neither seen nor lit",
+        count, listed(names));
+}
+
 }  // namespace luxel::scene

@@ -239,6 +239,21 @@ TEST(Validate, ReflectanceIsClampedByItsFactor) {
   EXPECT_EQ(scene.materials[0].base_color.z, 1) << "0.75 is no news";
 }
 
+TEST(Validate, WhatIsFullyTransparentIsNamed) {
+  for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
+    Scene scene = good_scene();
+    scene.materials[0].alpha = 0, scene.materials[0].alpha_mode = mode;
+    EXPECT_THAT(warnings_of(scene), HasSubstr("2 triangles of 'paint' are fully transparent"));
+    EXPECT_EQ(scene.materials[0].alpha, 0) << "the file says so";
+  }
+  Scene opaque = good_scene(), faint = good_scene(), unused = good_scene();
+  opaque.materials[0].alpha = 0;
+  faint.materials[0].alpha = 0.01f, faint.materials[0].alpha_mode = AlphaMode::blend;
+  unused.materials.push_back(unused.materials[0]);
+  unused.materials[1].alpha = 0, unused.materials[1].alpha_mode = AlphaMode::blend;
+  for (Scene* scene : {&opaque, &faint, &unused}) EXPECT_EQ(warnings_of(*scene), "");
+}
+
 // Clamping the factor of a textured material would darken its dark texels too.
 TEST(Validate, TexturedReflectanceIsWarnedOfAndKept) {
   Scene scene = good_scene();

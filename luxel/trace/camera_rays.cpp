@@ -41,6 +41,13 @@ Ray CameraRays::through(float x, float y) const {
   return {.origin = eye, .direction = normalize(forward + aside)};
 }
 
+Vec2 CameraRays::pixel_of(Vec3 place) const {
+  const Vec3 to_place = place - eye;
+  const float ahead = orthographic ? 1 : dot(to_place, forward);
+  return {(dot(to_place, right) / (dot(right, right) * ahead) + 1) * width / 2,
+          (1 - dot(to_place, up) / (dot(up, up) * ahead)) * height / 2};
+}
+
 bool faces(const CameraRays& camera, Vec3 place, Vec3 normal) {
   const Vec3 to_place = place - camera.eye;
   if (dot(normal, camera.orthographic ? camera.forward : to_place) >= 0) return false;

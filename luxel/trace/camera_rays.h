@@ -21,6 +21,8 @@ struct CameraRays {
   /// Through picture coordinates, (0, 0) = the top left corner, pixels have size 1. Directions are
   /// of unit length.
   Ray through(float x, float y) const;
+  /// The picture coordinates of a place before the eye.
+  Vec2 pixel_of(Vec3 place) const;
 
   Vec3 eye, right, up, forward;  ///< right and up reach the picture's edges at distance 1 [m]
   bool orthographic = false;

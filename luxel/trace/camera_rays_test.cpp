@@ -19,6 +19,8 @@ TEST(CameraRays, PlacesOfThePictureFaceTheCamera) {
         const bool is_in = x > 0 && x < 1 && y > 0 && y < 1;
         EXPECT_EQ(faces(rays, place, ray.direction * -1.0f), is_in) << x << " " << y;
         EXPECT_FALSE(faces(rays, place, ray.direction)) << "its back";
+        EXPECT_NEAR(rays.pixel_of(place).x, 200 * x, 1e-3f);
+        EXPECT_NEAR(rays.pixel_of(place).y, 100 * y, 1e-3f);
         const Vec3 behind = ray.origin - ray.direction * 7.0f;
         if (height_m == 0) {
           EXPECT_FALSE(faces(rays, behind, ray.direction));

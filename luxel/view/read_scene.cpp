@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "luxel/pipeline/bake/camera.h"
-#include "luxel/pipeline/bake/finish_bake.h"
+#include "luxel/pipeline/bake/preview.h"
 #include "luxel/view/open_bake.h"
 
 namespace luxel::view {

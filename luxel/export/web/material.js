@@ -153,6 +153,12 @@ out vec4 pixel;
 ${toneMap}
 void main() {
   vec3 seen = background;
+#ifndef SURROUNDINGS
+  if (background == vec3(0.0)) {  // nothing is there: the grey of preview.png, at any exposure
+    pixel = vec4(srgb(vec3(show == 2 ? 0.0 : 0.2)), 1.0);
+    return;
+  }
+#endif
 #ifdef SURROUNDINGS
   const float pi = 3.14159265358979;
   vec3 d = normalize(towards);

@@ -19,6 +19,7 @@
 #include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/bake/finish_bake.h"
+#include "luxel/pipeline/bake/preview.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/reuse/same_work.h"

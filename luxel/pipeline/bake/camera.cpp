@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "luxel/display/fit_camera.h"
 #include "luxel/scene/brightness.h"
@@ -53,7 +54,71 @@ const scene::Camera* find_camera(const scene::Scene& scene, const std::string& n
   return found == scene.cameras.end() ? nullptr : &*found;
 }
 
+bool is_flat(const scene::Scene& scene, std::span<const trace::Hit> hits) {
+  Vec3 sum{};
+  for (const trace::Hit& hit : hits) {
+    const Vec3 n = scene::front_normal(scene, hit.instance, hit.triangle);
+    sum += dot(n, sum) < 0 ? -n : n;
+  }
+  return length(sum) > 0.999f * float(hits.size());
+}
+
+/// Why a picture of a file's camera shows nothing; empty: it shows something.
+std::string why_blind(const scene::Scene& scene, const scene::Camera& camera, Outlook outlook) {
+  constexpr float kArm_m = 0.75f;
+  constexpr double kNearlyAll = 0.9;
+  // Of the scene's diagonal: cameras close to small things, and to walls of rooms.
+  constexpr float kTooNear = 0.02f, kBeforeAWall = 0.1f;
+  std::vector<trace::Hit>& seen = outlook.seen;
+  const size_t rays = seen.size();
+  std::erase_if(seen, [](const trace::Hit& hit) { return !hit.found(); });
+  if (seen.empty())
+    return std::ranges::any_of(outlook.first, &trace::Hit::found) ? "shows no front of a surface"
+                                                                  : "shows no surface";
+  if (camera.orthographic_height_m > 0 || double(seen.size()) < kNearlyAll * double(rays))
+    return {};
+  const auto at = seen.begin() + std::ptrdiff_t(kNearlyAll * double(rays));
+  std::ranges::nth_element(seen, at, {}, &trace::Hit::t);
+  const float farthest = at->t, diagonal = scene::world_bounds(scene).diagonal();
+  const bool is_near = farthest < std::min(kArm_m, kTooNear * diagonal);
+  if (!is_near && !(farthest < std::min(kArm_m, kBeforeAWall * diagonal) && is_flat(scene, seen)))
+    return {};
+  return fmt::format("looks at a wall {:.2g} m away", std::ranges::min(seen, {}, &trace::Hit::t).t);
+}
+
+/// The first camera of the file, or a fitted one.
+scene::Camera usual_camera(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect,
+                           std::vector<std::string>* warnings) {
+  if (scene.cameras.empty()) return display::fit_camera(scene, tracer, aspect);
+  const scene::Camera& first = scene.cameras.front();
+  const float own = first.aspect > 0 ? first.aspect : aspect;
+  const std::string why = why_blind(scene, first, outlook_of(scene, tracer, first, own));
+  if (why.empty()) return first;
+  if (warnings)
+    warnings->push_back(fmt::format(
+        "camera '{}' of the file {}, so the picture is taken from a fitted view; --view {} shows "
+        "the file's",
+        first.name, why, first.name));
+  return display::fit_camera(scene, tracer, aspect);
+}
+
 }  // namespace
+
+Outlook outlook_of(const scene::Scene& scene, const trace::RayTracer& tracer,
+                   const scene::Camera& camera, float aspect) {
+  constexpr int kRows = 48;
+  const int columns = std::clamp(int(float(kRows) * aspect), 8, 4 * kRows);
+  const trace::CameraRays through(camera, columns, kRows);
+  std::vector<trace::Ray> rays;
+  for (int y = 0; y < kRows; ++y)
+    for (int x = 0; x < columns; ++x)
+      rays.push_back(through.through(float(x) + 0.5f, float(y) + 0.5f));
+  Outlook out;
+  out.first.resize(rays.size());
+  tracer.closest_hits(rays, out.first);
+  out.seen = trace::visible_hits(scene, tracer, rays);
+  return out;
+}
 
 std::string viewpoint_names() { return "interior, exterior, front or top"; }
 
@@ -64,7 +129,8 @@ Status check_view(const std::string& view, const scene::Scene& scene, const std:
 }
 
 Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Scene& scene,
-                                    const trace::RayTracer& tracer, const std::string& file) {
+                                    const trace::RayTracer& tracer, const std::string& file,
+                                    std::vector<std::string>* warnings) {
   if (choice.eye) {
     if (!scene::has_unit_vector(*choice.eye - choice.look_at))
       return fail(ErrorCode::bad_setting, "--eye and --look-at are the same point");
@@ -74,9 +140,7 @@ Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Sce
   if (const auto from = viewpoint_of(choice.view))
     return display::fit_camera(scene, tracer, choice.aspect, *from);
   const std::string& name = choice.view.empty() ? choice.name : choice.view;
-  if (name.empty())
-    return scene.cameras.empty() ? display::fit_camera(scene, tracer, choice.aspect)
-                                 : scene.cameras.front();
+  if (name.empty()) return usual_camera(scene, tracer, choice.aspect, warnings);
   if (const scene::Camera* camera = find_camera(scene, name)) return *camera;
   return fail(ErrorCode::bad_setting, "{} {} is not in {}; its cameras: {}", choice.asked, name,
               file, camera_names(scene));

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/image/image.h"
@@ -30,9 +31,20 @@ std::string viewpoint_names();
 /// `file` is what messages call the scene.
 Status check_view(const std::string& view, const scene::Scene& scene, const std::string& file);
 
-/// `file` is what messages call the scene. Errors: no such camera, one that looks nowhere.
+/// What the rays of a coarse grid meet, first of all and when the backs of one-sided materials are
+/// invisible.
+struct Outlook {
+  std::vector<trace::Hit> first, seen;
+};
+Outlook outlook_of(const scene::Scene& scene, const trace::RayTracer& tracer,
+                   const scene::Camera& camera, float aspect);
+
+/// `file` is what messages call the scene. A camera of the file that nobody asked for and that
+/// shows no surface, or a wall right before it, gives way to a fitted one; `warnings` gets a
+/// sentence then. Errors: no such camera, one that looks nowhere.
 Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Scene& scene,
-                                    const trace::RayTracer& tracer, const std::string& file);
+                                    const trace::RayTracer& tracer, const std::string& file,
+                                    std::vector<std::string>* warnings = nullptr);
 
 /// Errors: a pixel of a picture of the scene has more light than can be held (scene::check_held).
 Status check_picture(const scene::Scene& scene, const trace::RayTracer& tracer,

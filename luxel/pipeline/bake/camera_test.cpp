@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "luxel/scene/place_camera.h"
 #include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
 
 namespace luxel::pipeline {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 struct Room {
@@ -79,6 +83,57 @@ TEST(ChooseCamera, TakesAViewByItsWordOrACameraByItsName) {
   EXPECT_THAT(view("window").error().message,
               HasSubstr("--view window is neither interior, exterior, front or top nor a camera of "
                         "box.glb; its cameras: door"));
+}
+
+/// A room of 5 x 3 x 5 m whose floor has its corner at the origin, and a camera in it.
+Room room_of_5_m(Vec3 eye, Vec3 target) {
+  scene::Scene scene;
+  scene::add_material(scene, "wall", {0.5f, 0.5f, 0.5f});
+  scene::Mesh walls;
+  scene::add_box(walls, {0, 0, 0}, {5, 3, 5}, 0);
+  for (auto& [a, b, c] : walls.triangles) std::swap(b, c);
+  scene::place(scene, std::move(walls));
+  scene::place_camera(scene, "file's", eye, target, 0.8f);
+  return {std::move(scene)};
+}
+
+// Only where nobody asked for it: a camera in a corner, in front of a wall, or beside the room.
+TEST(ChooseCamera, LeavesAFilesCameraThatShowsNothing) {
+  const auto chosen = [](const Room& room, const CameraChoice& choice = {}) {
+    std::vector<std::string> said;
+    const auto camera = choose_camera(choice, room.scene, room.tracer, "room.glb", &said);
+    EXPECT_EQ(said.empty(), camera->name == "file's");
+    return said.empty() ? "" : said[0];
+  };
+  EXPECT_THAT(chosen(room_of_5_m({2.5f, 1.5f, 0.4f}, {2.5f, 1.5f, 0})),
+              AllOf(HasSubstr("looks at a wall 0.4 m away"), HasSubstr("--view file's")));
+  EXPECT_THAT(chosen(room_of_5_m({2, 1, -1}, {2, 1, -5})), HasSubstr("shows no surface"));
+  EXPECT_EQ(chosen(room_of_5_m({2.5f, 1.5f, 1.2f}, {2.5f, 1.5f, 0})), "");
+  EXPECT_EQ(chosen(room_of_5_m({0.4f, 1.5f, 0.4f}, {5, 1, 5})), "");
+  EXPECT_EQ(chosen(room_of_5_m({2.5f, 1.5f, 0.4f}, {2.5f, 1.5f, 0}), {.view = "file's"}), "");
+}
+
+// A camera close to a small thing is a camera of that thing.
+TEST(ChooseCamera, KeepsOneThatIsCloseToASmallThing) {
+  Room room = room_of_5_m({2.5f, 1, 2.9f}, {2.5f, 1, 2.5f});
+  scene::Mesh cup = scene::sphere("cup", 0.25f, 16, 8, 0);
+  scene::place(room.scene, std::move(cup), translation({2.5f, 1, 2.5f}));
+  room.tracer = *trace::RayTracer::build(room.scene);
+  EXPECT_EQ(room.camera({})->name, "file's");
+}
+
+// Backs of one-sided walls are invisible: there is nothing to see from outside of a flat scene's.
+TEST(ChooseCamera, LeavesOneThatSeesNoFront) {
+  Room room;
+  room.scene = {};
+  scene::add_material(room.scene, "floor", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(room.scene, {-1, 1, -1, 1}, 0, true, 0);
+  scene::place_camera(room.scene, "below", {0, -3, 0.1f}, {0, 0, 0}, 0.5f);
+  room.tracer = *trace::RayTracer::build(room.scene);
+  std::vector<std::string> said;
+  EXPECT_EQ(choose_camera({}, room.scene, room.tracer, "floor.glb", &said)->name, "fitted");
+  EXPECT_THAT(said,
+              ElementsAre(HasSubstr("camera 'below' of the file shows no front of a surface")));
 }
 
 }  // namespace

@@ -1,23 +1,16 @@
 #include "luxel/pipeline/bake/finish_bake.h"
 
 #include <algorithm>
-#include <tuple>
 
-#include "luxel/display/draw.h"
-#include "luxel/display/tone_map.h"
-#include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/texels/shown_light.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/post/dilate.h"
 #include "luxel/post/refill.h"
 #include "luxel/post/seams.h"
 #include "luxel/scene/sides.h"
-#include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
 namespace {
-
-constexpr int kPreviewHeight = 720;
 
 /// Texels that have nothing to tell of the light at seams: hidden ones, and those of a kept
 /// TEXCOORD_1 which look-ups on another chart blend in. Stitching would spread their light.
@@ -108,31 +101,6 @@ Status add_directions(const BakeSettings& settings, const light::TexelScene& inp
               probe_grid(input, light, float(settings.probe_spacing_m), settings.seed, progress));
     bake.light.rays += bake.probes->rays;
   }
-  return {};
-}
-
-std::pair<int, int> preview_size(const scene::Camera& camera) {
-  const float aspect = camera.aspect > 0 ? camera.aspect : kPreviewAspect;
-  const int width = int(float(kPreviewHeight) * aspect + 0.5f);
-  return {std::clamp(width, kPreviewHeight / 4, kPreviewHeight * 4), kPreviewHeight};
-}
-
-Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
-                    Progress& progress) {
-  const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
-  progress.begin("draw", 0);  // a view is chosen for the picture's sake
-  LUXEL_TRY(const scene::Camera camera,
-            choose_camera({.view = settings.view, .aspect = kPreviewAspect}, bake.scene, tracer,
-                          settings.scene.string()));
-  display::DrawParams params;
-  std::tie(params.width, params.height) = preview_size(camera);
-  LUXEL_TRY(const image::Image picture,
-            display::draw(
-                bake.scene, tracer, camera,
-                [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
-                params, progress));
-  bake.view = {camera, params.width, params.height, display::readable_exposure(picture)};
-  bake.preview = display::tone_map(picture, bake.view.exposure);
   return {};
 }
 

@@ -1,7 +1,5 @@
-// What follows the solver: leaks repaired, seams stitched, lightmaps and the preview made.
+// What follows the solver: leaks repaired, seams stitched, lightmaps made.
 #pragma once
-
-#include <utility>
 
 #include "luxel/pipeline/bake/bake_scene.h"
 
@@ -22,15 +20,5 @@ inline constexpr int kRefillRings = 2;
 /// Errors: too little memory, cancelled.
 Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
                       Progress& progress);
-
-/// The shape of a picture whose camera leaves it open.
-inline constexpr float kPreviewAspect = 4.0f / 3;
-/// Width and height of preview.png [pixels].
-std::pair<int, int> preview_size(const scene::Camera& camera);
-
-/// bake.preview, from where settings.view says, or else the scene's first camera, or a fitted one.
-/// Errors: those of choose_camera(); cancelled.
-Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
-                    Progress& progress);
 
 }  // namespace luxel::pipeline

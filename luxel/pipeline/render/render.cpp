@@ -134,13 +134,14 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress, const BakeD
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
-  LUXEL_TRY(const scene::Camera camera, choose_camera({.view = s.view,
-                                                       .name = s.camera,
-                                                       .eye = s.eye,
-                                                       .look_at = s.look_at,
-                                                       .fov_deg = s.fov_deg,
-                                                       .aspect = float(s.width) / float(s.height)},
-                                                      imported.scene, tracer, s.scene.string()));
+  LUXEL_TRY(const scene::Camera camera,
+            choose_camera({.view = s.view,
+                           .name = s.camera,
+                           .eye = s.eye,
+                           .look_at = s.look_at,
+                           .fov_deg = s.fov_deg,
+                           .aspect = float(s.width) / float(s.height)},
+                          imported.scene, tracer, s.scene.string(), &out.warnings));
   const Subject subject{imported.scene, tracer, camera, unit, device};
   LUXEL_TRY(const std::vector<std::byte> bytes,
             technique ? one_picture(*technique, subject, s, out, progress)

@@ -113,6 +113,13 @@ TEST(KeepUv, AutomaticReplacesWhatIsAPointOrALine) {
                 HasSubstr("2 triangles of 'one' (mesh 'quads')"));
 }
 
+// Where all is a line up to rounding there is no other scale to hold it against.
+TEST(KeepUv, AutomaticReplacesALayoutOfLines) {
+  scene::Scene scene = two_quads();
+  for (Vec2& uv : scene.meshes[0].uv1) uv.y = 0.3f + 1e-7f * uv.y;
+  EXPECT_THAT(why_replaced(scene), HasSubstr("4 triangles of 'one'"));
+}
+
 TEST(KeepUv, ASliverOfTheAreaMayBeAPoint) {
   const std::array<Vec2, 4> point{};
   EXPECT_EQ(why_replaced(with_third_quad(0.1f, point)), "");   // 0.5 % of the area

@@ -45,7 +45,7 @@ std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);
 CLI::Validator whole_number(uint64_t most = UINT64_MAX);
 
 /// "x,y,z".
-Result<Vec3> parse_point(const char* option, const std::string& text);
+Result<DVec3> parse_point(const char* option, const std::string& text);
 
 /// Prints the error's sentence to stderr, or an event of --progress-json, and, with --json, an
 /// object with it to stdout. Returns its exit code.

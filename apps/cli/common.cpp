@@ -56,13 +56,13 @@ CLI::Validator whole_number(uint64_t most) {
           ""};
 }
 
-Result<Vec3> parse_point(const char* option, const std::string& text) {
-  Vec3 p;
+Result<DVec3> parse_point(const char* option, const std::string& text) {
+  DVec3 p;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) != 3)
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &p.x, &p.y, &p.z, &rest) != 3)
     return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option,
                 text);
-  if (scene::is_held(p)) return p;
+  if (scene::is_held(to_float(p))) return p;
   return fail(ErrorCode::bad_setting, "{} '{}' is too far away: coordinates go up to {:g} m",
               option, text, scene::kFarthest_m);
 }

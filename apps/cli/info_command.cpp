@@ -4,6 +4,7 @@
 #include "apps/cli/machine.h"
 #include "luxel/gpu/device.h"
 #include "luxel/import/import.h"
+#include "luxel/scene/origin.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::cli {
@@ -35,6 +36,10 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
     }
   }
   const Box3 box = scene::world_bounds(scene);
+  const auto in_world = [&](Vec3 p) {
+    const DVec3 at = scene::in_world(scene, p);
+    return nlohmann::json{at.x, at.y, at.z};
+  };
   return {{"triangles", drawn},
           {"triangles_stored", stored},
           {"emissive_triangles", emissive},
@@ -45,7 +50,8 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
           {"lights", scene.lights.size()},
           {"cameras", scene.cameras.size()},
           {"area_m2", area},
-          {"bounds", {vector_json(box.lower), vector_json(box.upper)}},
+          {"bounds", {in_world(box.lower), in_world(box.upper)}},
+          {"origin", {scene.origin.x, scene.origin.y, scene.origin.z}},
           {"has_texcoord_1", uv1},
           {"warnings", warnings}};
 }

@@ -22,7 +22,8 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
   s.threads = options.common.threads;
   LUXEL_TRY(s.at, parse_point("--at", options.at));
   if (!options.normal.empty()) {
-    LUXEL_TRY(s.normal, parse_point("--normal", options.normal));
+    LUXEL_TRY(const DVec3 normal, parse_point("--normal", options.normal));
+    s.normal = to_float(normal);
   }
   const bool by_faces = options.solver == "hierarchical";
   s.method = by_faces         ? pipeline::ProbeMethod::hierarchical
@@ -51,7 +52,7 @@ nlohmann::json json_of(const pipeline::Probed& p) {
   nlohmann::json json{
       {"surface", p.name},
       {"material", p.material},
-      {"position", rgb_json(p.position)},
+      {"position", {p.position.x, p.position.y, p.position.z}},
       {"normal", rgb_json(p.normal)},
       {"distance_m", p.distance_m},
       {"irradiance", rgb_json(p.irradiance)},

@@ -109,35 +109,36 @@ scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, c
 struct DrawnNode {
   std::string name;
   std::vector<unsigned> parts;
-  Mat34 world;
+  NodePlace place;
 };
 
 /// The nodes that draw something, in the order of the tree, and where each named node is, which
 /// lights and cameras look up.
 std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_file,
-                                   NodeTransforms& transforms) {
+                                   NodePlaces& places) {
   struct Visit {
     const aiNode* node;
-    Mat34 parent;
+    NodePlace parent;
   };
   std::vector<DrawnNode> drawn;
-  std::vector<Visit> stack{{in.mRootNode, world_from_file}};
+  std::vector<Visit> stack{{in.mRootNode, {world_from_file, to_double(world_from_file)}}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
     stack.pop_back();
-    const Mat34 world = parent * mat34_of(node->mTransformation);
-    transforms.emplace(node->mName.C_Str(), world);
-    for (unsigned i = node->mNumChildren; i-- > 0;) stack.push_back({node->mChildren[i], world});
+    const Mat34 local = mat34_of(node->mTransformation);
+    const NodePlace place{parent.world * local, parent.exact * to_double(local)};
+    places.emplace(node->mName.C_Str(), place);
+    for (unsigned i = node->mNumChildren; i-- > 0;) stack.push_back({node->mChildren[i], place});
     if (node->mNumMeshes == 0) continue;
     drawn.push_back(
-        {node->mName.C_Str(), {node->mMeshes, node->mMeshes + node->mNumMeshes}, world});
+        {node->mName.C_Str(), {node->mMeshes, node->mMeshes + node->mNumMeshes}, place});
   }
   return drawn;
 }
 
 /// Nodes that draw the same parts share one mesh.
 void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const Habits& habits,
-                   scene::Scene& out) {
+                   scene::Scene& out, ExactPlaces& exact) {
   std::map<std::vector<unsigned>, uint32_t> known;
   for (const DrawnNode& node : drawn) {
     const auto [mesh, is_new] = known.try_emplace(node.parts, uint32_t(out.meshes.size()));
@@ -145,7 +146,8 @@ void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const
       out.meshes.push_back(merged_mesh(in, node.parts, habits, out));
       out.meshes.back().name = node.name;
     }
-    out.instances.push_back({node.name, mesh->second, node.world});
+    out.instances.push_back({node.name, mesh->second, node.place.world});
+    exact.instances.push_back(node.place.exact);
   }
 }
 
@@ -232,7 +234,7 @@ Status check_extension(const SourceFile& source) {
               source.name, source.extension, list);
 }
 
-Result<Imported> read_with_assimp(const SourceFile& source) {
+Result<Imported> read_with_assimp(const SourceFile& source, ExactPlaces& exact) {
   Imported imported;
   LUXEL_TRY(const Rewritten rewritten, rewrite(source, imported.warnings));
   Assimp::Importer importer;
@@ -246,13 +248,13 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
                 one_sentence(importer.GetErrorString()));
 
   LUXEL_TRY_STATUS(read_assimp_materials(*in, source, imported));
-  NodeTransforms transforms;
+  NodePlaces places;
   const std::vector<DrawnNode> drawn =
-      drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
+      drawn_nodes(*in, world_from_file(*in, source, imported.warnings), places);
   const Habits habits{rewritten.ply.has_display_colors, source.extension == ".stl"};
-  add_instances(*in, drawn, habits, imported.scene);
-  add_assimp_lights(*in, source, transforms, imported);
-  add_assimp_cameras(*in, source, transforms, imported.scene);
+  add_instances(*in, drawn, habits, imported.scene, exact);
+  add_assimp_lights(*in, source, places, imported, exact);
+  add_assimp_cameras(*in, source, places, imported.scene, exact);
   if (source.extension == ".ply" || source.extension == ".stl")
     imported.about_lost_lights = fmt::format("{} files cannot hold lights", source.extension);
   return imported;

@@ -9,9 +9,9 @@
 namespace luxel::import {
 namespace {
 
-Mat34 transform_of(const NodeTransforms& transforms, const aiString& name) {
-  const auto found = transforms.find(name.C_Str());
-  return found == transforms.end() ? Mat34{} : found->second;
+NodePlace place_of(const NodePlaces& places, const aiString& name) {
+  const auto found = places.find(name.C_Str());
+  return found == places.end() ? NodePlace{} : found->second;
 }
 
 /// COLLADA's unit is in the root node's transform.
@@ -43,8 +43,8 @@ std::optional<scene::LightKind> kind_of(aiLightSourceType type) {
 
 }  // namespace
 
-void add_assimp_lights(const aiScene& in, const SourceFile& source,
-                       const NodeTransforms& transforms, Imported& out) {
+void add_assimp_lights(const aiScene& in, const SourceFile& source, const NodePlaces& places,
+                       Imported& out, ExactPlaces& exact) {
   for (unsigned i = 0; i < in.mNumLights; ++i) {
     const aiLight& from = *in.mLights[i];
     const std::optional<scene::LightKind> kind = kind_of(from.mType);
@@ -55,7 +55,7 @@ void add_assimp_lights(const aiScene& in, const SourceFile& source,
                       from.mName.C_Str()));
       continue;
     }
-    const Mat34 world = transform_of(transforms, from.mName);
+    const auto [world, exact_world] = place_of(places, from.mName);
     scene::PunctualLight light;
     light.name = from.mName.C_Str();
     light.kind = *kind;
@@ -69,16 +69,17 @@ void add_assimp_lights(const aiScene& in, const SourceFile& source,
     // one up.
     if (source.extension == ".dae") light.outer_cone_rad = light.inner_cone_rad;
     out.scene.lights.push_back(light);
+    exact.lights.push_back(transform_point(exact_world, to_double(vec3_of(from.mPosition))));
   }
 }
 
-void add_assimp_cameras(const aiScene& in, const SourceFile& source,
-                        const NodeTransforms& transforms, scene::Scene& out) {
+void add_assimp_cameras(const aiScene& in, const SourceFile& source, const NodePlaces& places,
+                        scene::Scene& out, ExactPlaces& exact) {
   std::vector<ColladaLens> lenses;
   if (source.extension == ".dae") lenses = read_collada_lenses(source);
   for (unsigned i = 0; i < in.mNumCameras; ++i) {
     const aiCamera& from = *in.mCameras[i];
-    const Mat34 world = transform_of(transforms, from.mName);
+    const auto [world, exact_world] = place_of(places, from.mName);
     const Vec3 forward = normalize(transform_vector(world, vec3_of(from.mLookAt)));
     const Vec3 right = normalize(cross(forward, transform_vector(world, vec3_of(from.mUp))));
     scene::Camera camera;
@@ -90,6 +91,7 @@ void add_assimp_cameras(const aiScene& in, const SourceFile& source,
     else
       set_lens(from, camera);
     out.cameras.push_back(camera);
+    exact.cameras.push_back(transform_point(exact_world, to_double(vec3_of(from.mPosition))));
   }
 }
 

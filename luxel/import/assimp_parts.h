@@ -27,13 +27,18 @@ Status split_polygons(aiScene& scene, const SourceFile& source, std::vector<std:
 Mat34 world_from_file(const aiScene& in, const SourceFile& source,
                       std::vector<std::string>& warnings);
 
-/// Where each named node is, in the world.
-using NodeTransforms = std::map<std::string, Mat34>;
+/// Where a node is in the world, in both precisions.
+struct NodePlace {
+  Mat34 world;
+  DMat34 exact;
+};
+/// Of each named node.
+using NodePlaces = std::map<std::string, NodePlace>;
 
-void add_assimp_lights(const aiScene& in, const SourceFile& source,
-                       const NodeTransforms& transforms, Imported& out);
-void add_assimp_cameras(const aiScene& in, const SourceFile& source,
-                        const NodeTransforms& transforms, scene::Scene& out);
+void add_assimp_lights(const aiScene& in, const SourceFile& source, const NodePlaces& places,
+                       Imported& out, ExactPlaces& exact);
+void add_assimp_cameras(const aiScene& in, const SourceFile& source, const NodePlaces& places,
+                        scene::Scene& out, ExactPlaces& exact);
 
 /// Is this error of Assimp's validation one that make_names_unique() can help?
 bool is_about_names(std::string_view error);

@@ -42,12 +42,12 @@ std::string about_lost_lights(const std::string& generator) {
 
 }  // namespace
 
-Result<Imported> read_gltf(const SourceFile& source) {
+Result<Imported> read_gltf(const SourceFile& source, ExactPlaces& exact) {
   LUXEL_TRY(const LoadedGltf loaded, load_gltf(source));
   const auto& [document, model] = loaded;
 
   Imported imported;
-  GltfReader reader{document, model, source, imported, world_transforms(model)};
+  GltfReader reader{document, model, source, imported, exact, world_transforms(model)};
   for (const std::string& extension : ignored_extensions(document))
     reader.warn("{} is not supported and is ignored", extension);
   LUXEL_TRY_STATUS(read_materials(reader));

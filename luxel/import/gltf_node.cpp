@@ -8,29 +8,38 @@ namespace luxel::import {
 namespace {
 
 /// A rotation by a quaternion (x, y, z, w), which files store only nearly of unit length.
-Mat34 rotation(double x, double y, double z, double w) {
+DMat34 rotation(double x, double y, double z, double w) {
   const double length2 = x * x + y * y + z * z + w * w;
   if (!(length2 > 0)) return {};
   const double s = 2 / length2;
-  const auto f = [](double v) { return float(v); };
-  return from_columns({f(1 - s * (y * y + z * z)), f(s * (x * y + z * w)), f(s * (x * z - y * w))},
-                      {f(s * (x * y - z * w)), f(1 - s * (x * x + z * z)), f(s * (y * z + x * w))},
-                      {f(s * (x * z + y * w)), f(s * (y * z - x * w)), f(1 - s * (x * x + y * y))},
-                      {});
+  return {{{{1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w), 0},
+            {s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w), 0},
+            {s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y), 0}}}};
 }
 
-Mat34 local_transform(const tinygltf::Node& node) {
+Mat34 rounded(const DMat34& m) {
+  Mat34 out;
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 4; ++j) out.row[i][j] = float(m.row[i][j]);
+  return out;
+}
+
+/// A node's own map, in both precisions: their products round in other places.
+std::pair<Mat34, DMat34> local_transforms(const tinygltf::Node& node) {
+  DMat34 exact;
   if (node.matrix.size() == 16) {  // column by column
-    const std::vector<double>& m = node.matrix;
-    const auto column_at = [&](size_t j) {
-      return Vec3{float(m[4 * j]), float(m[4 * j + 1]), float(m[4 * j + 2])};
-    };
-    return from_columns(column_at(0), column_at(1), column_at(2), column_at(3));
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 4; ++j) exact.row[i][j] = node.matrix[4 * j + i];
+    return {rounded(exact), exact};
   }
-  const std::vector<double>& q = node.rotation;
-  const Mat34 turn = q.size() == 4 ? rotation(q[0], q[1], q[2], q[3]) : Mat34{};
-  return translation(vec3_of(node.translation, {})) * turn *
-         scaling(vec3_of(node.scale, {1, 1, 1}));
+  const std::vector<double>&q = node.rotation, &t = node.translation, &s = node.scale;
+  if (q.size() == 4) exact = rotation(q[0], q[1], q[2], q[3]);
+  const Mat34 local = translation(vec3_of(t, {})) * rounded(exact) * scaling(vec3_of(s, {1, 1, 1}));
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3 && s.size() == 3; ++j) exact.row[i][j] *= s[j];
+    if (t.size() == 3) exact.row[i][3] = t[i];
+  }
+  return {local, exact};
 }
 
 /// What extras say by "luxel": {"KEY": ...} or by "FLAT_KEY"; null where they do not.
@@ -51,8 +60,9 @@ float disc_of(const tinygltf::Light& light) {
 }
 
 /// [KHR_lights_punctual]: a light shines along its node's -z; scale does not change it.
-void add_light(GltfReader& reader, size_t number, const Mat34& world) {
+void add_light(GltfReader& reader, size_t number) {
   const tinygltf::Node& node = reader.model.nodes[number];
+  const Mat34& world = reader.world.rounded[number];
   const auto extension = node.extensions.find("KHR_lights_punctual");
   if (extension == node.extensions.end()) return;
   const double index = number_in(extension->second, "light", -1);
@@ -77,10 +87,13 @@ void add_light(GltfReader& reader, size_t number, const Mat34& world) {
   if (!scene::has_position(light.kind)) light.angular_radius_rad = disc_of(in);
   reader.out.scene.lights.push_back(light);
   reader.out.node_of_light.push_back(uint32_t(number));
+  reader.exact.lights.push_back(translation_of(reader.world.exact[number]));
 }
 
-void add_camera(GltfReader& reader, const tinygltf::Node& node, const Mat34& world) {
+void add_camera(GltfReader& reader, size_t number) {
+  const tinygltf::Node& node = reader.model.nodes[number];
   if (node.camera < 0) return;
+  const Mat34& world = reader.world.rounded[number];
   const tinygltf::Camera& in = reader.model.cameras[size_t(node.camera)];
   scene::Camera camera;
   camera.name = !node.name.empty() ? node.name : in.name;
@@ -96,6 +109,7 @@ void add_camera(GltfReader& reader, const tinygltf::Node& node, const Mat34& wor
     camera.aspect = float(in.perspective.aspectRatio);
   }
   reader.out.scene.cameras.push_back(camera);
+  reader.exact.cameras.push_back(translation_of(reader.world.exact[number]));
 }
 
 int accessor_of(const tinygltf::Value& attributes, const char* key) {
@@ -129,7 +143,8 @@ Result<std::vector<Mat34>> copies_of(const GltfReader& reader, const tinygltf::N
                               : Vec3{n.values[3 * i], n.values[3 * i + 1], n.values[3 * i + 2]};
     };
     const float* q = r.values.empty() ? nullptr : &r.values[4 * i];
-    copies[i] = translation(vec3_at(t, {})) * (q ? rotation(q[0], q[1], q[2], q[3]) : Mat34{}) *
+    copies[i] = translation(vec3_at(t, {})) *
+                (q ? rounded(rotation(q[0], q[1], q[2], q[3])) : Mat34{}) *
                 scaling(vec3_at(s, {1, 1, 1}));
   }
   return copies;
@@ -198,13 +213,17 @@ Status add_instances(GltfReader& reader, size_t index, const LightmapExtras& lig
   if (node.skin < 0) {
     LUXEL_TRY(copies,
               copies_of(reader, node, reader.source.name + ": " + label("node", index, node.name)));
-    for (Mat34& copy : copies) copy = reader.world[index] * copy;
   }
+  const bool has_place = node.skin < 0;
   const std::string& mesh_name = reader.model.meshes[size_t(node.mesh)].name;
-  for (const Mat34& copy : copies)
-    reader.out.scene.instances.push_back({node.name.empty() ? mesh_name : node.name, mesh, copy,
+  for (const Mat34& copy : copies) {
+    reader.out.scene.instances.push_back({node.name.empty() ? mesh_name : node.name, mesh,
+                                          has_place ? reader.world.rounded[index] * copy : copy,
                                           lightmap.density.value_or(1.0f),
                                           lightmap.bake.value_or(true)});
+    reader.exact.instances.push_back(has_place ? reader.world.exact[index] * to_double(copy)
+                                               : to_double(copy));
+  }
   reader.out.node_of_instance.resize(reader.out.scene.instances.size(), uint32_t(index));
   return {};
 }
@@ -231,16 +250,20 @@ std::vector<int> root_nodes(GltfReader& reader) {
 
 }  // namespace
 
-std::vector<Mat34> world_transforms(const tinygltf::Model& model) {
-  std::vector<Mat34> world(model.nodes.size());
+WorldTransforms world_transforms(const tinygltf::Model& model) {
+  WorldTransforms world{std::vector<Mat34>(model.nodes.size()),
+                        std::vector<DMat34>(model.nodes.size())};
+  const auto place = [&](size_t node, const Mat34& parent, const DMat34& exact_parent) {
+    const auto [local, exact] = local_transforms(model.nodes[node]);
+    world.rounded[node] = parent * local, world.exact[node] = exact_parent * exact;
+  };
   std::vector<int> stack = top_nodes(model);
-  for (const int top : stack)
-    world[size_t(top)] = Mat34{} * local_transform(model.nodes[size_t(top)]);
+  for (const int top : stack) place(size_t(top), {}, {});
   while (!stack.empty()) {
     const auto parent = size_t(stack.back());
     stack.pop_back();
     for (const int child : model.nodes[parent].children) {
-      world[size_t(child)] = world[parent] * local_transform(model.nodes[size_t(child)]);
+      place(size_t(child), world.rounded[parent], world.exact[parent]);
       stack.push_back(child);
     }
   }
@@ -278,8 +301,8 @@ Status read_nodes(GltfReader& reader) {
         node.mesh < 0 ? inherited
                       : first_of(first_of(own, of_mesh[size_t(node.mesh)]), visit.inherited),
         known));
-    add_light(reader, number, reader.world[number]);
-    add_camera(reader, node, reader.world[number]);
+    add_light(reader, number);
+    add_camera(reader, number);
     push(node.children, inherited);
   }
   return {};

@@ -13,13 +13,20 @@
 
 namespace luxel::import {
 
+/// World from node, of every node of a document: in single precision, and as the file says it.
+struct WorldTransforms {
+  std::vector<Mat34> rounded;
+  std::vector<DMat34> exact;
+};
+
 /// What the steps of the reader share. Materials and meshes keep their glTF index in the scene.
 struct GltfReader {
   const nlohmann::json& document;  ///< as the file says it, without its nodes
   const tinygltf::Model& model;
   const SourceFile& source;
   Imported& out;
-  std::vector<Mat34> world{};                ///< world from node, of every node
+  ExactPlaces& exact;
+  WorldTransforms world;
   uint32_t default_material = scene::kNone;  ///< made when a primitive first needs it
   /// The set of texture coordinates that becomes a mesh's first one, for each material of the file.
   std::vector<int> first_set{};
@@ -33,8 +40,7 @@ struct GltfReader {
 /// Fills scene.materials and the textures they use. Errors: a texture that is missing or corrupt.
 Status read_materials(GltfReader& reader);
 
-/// World from node, of every node of the document.
-std::vector<Mat34> world_transforms(const tinygltf::Model& model);
+WorldTransforms world_transforms(const tinygltf::Model& model);
 
 /// One scene::Mesh per glTF mesh, its primitives merged; one without triangles where each node that
 /// draws it has a pose of its own. Errors: indices beyond the vertices; those of the pose.

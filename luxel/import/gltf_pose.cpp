@@ -122,7 +122,7 @@ bool has_own_pose(const tinygltf::Model& model, const tinygltf::Node& node) {
 Result<Pose> pose_of(const GltfReader& reader, size_t number) {
   const tinygltf::Node& node = reader.model.nodes[number];
   const tinygltf::Mesh& mesh = reader.model.meshes[size_t(node.mesh)];
-  Pose pose{node.weights.empty() ? mesh.weights : node.weights, {}, reader.world[number]};
+  Pose pose{node.weights.empty() ? mesh.weights : node.weights, {}, reader.world.rounded[number]};
   if (node.skin < 0) return pose;
   const tinygltf::Skin& skin = reader.model.skins[size_t(node.skin)];
   const std::string where = reader.source.name + ": " + label("skin", size_t(node.skin), skin.name);
@@ -138,7 +138,7 @@ Result<Pose> pose_of(const GltfReader& reader, size_t number) {
     Mat34 from_mesh;
     for (size_t r = 0; r < 3 && bind.count() > 0; ++r)
       for (size_t c = 0; c < 4; ++c) from_mesh.row[r][c] = bind.values[16 * k + 4 * c + r];
-    pose.joints.push_back(reader.world[size_t(skin.joints[k])] * from_mesh);
+    pose.joints.push_back(reader.world.rounded[size_t(skin.joints[k])] * from_mesh);
   }
   return pose;
 }

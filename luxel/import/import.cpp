@@ -15,10 +15,16 @@
 namespace luxel::import {
 namespace {
 
-Result<Imported> read_scene(const SourceFile& source) {
-  if (source.extension == ".gltf" || source.extension == ".glb") return read_gltf(source);
-  if (source.extension == ".obj") return read_obj(source);
-  return read_with_assimp(source);
+/// As a reader has made it, but near its origin.
+Result<Imported> read_scene(const SourceFile& source, const ImportParams& params) {
+  ExactPlaces exact;
+  const bool is_gltf = source.extension == ".gltf" || source.extension == ".glb";
+  LUXEL_TRY(Imported imported, is_gltf                      ? read_gltf(source, exact)
+                               : source.extension == ".obj" ? read_obj(source, exact)
+                                                            : read_with_assimp(source, exact));
+  for (std::string& told : move_towards_origin(exact, params.origin, source.name, imported))
+    imported.warnings.push_back(std::move(told));
+  return imported;
 }
 
 /// The crease angle for a file [degrees]. OBJ, PLY and STL leave open how a mesh without
@@ -85,7 +91,7 @@ Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
   // Third-party readers throw; nothing of it leaves this room.
   try {
-    LUXEL_TRY(Imported imported, read_scene(source));
+    LUXEL_TRY(Imported imported, read_scene(source, params));
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
     make_names_utf8(imported);
     const std::vector<scene::Instance> read = imported.scene.instances;

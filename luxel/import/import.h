@@ -39,6 +39,8 @@ struct ImportParams {
   /// per unit. Not set: Y, metres. Set for another format: an error (bad_setting).
   std::optional<Up> up{};
   std::optional<float> unit_m{};
+  /// Scene::origin. Not set: one near the scene, where that lies far from its own.
+  std::optional<DVec3> origin{};
 };
 inline constexpr float kUsualCreaseDeg = 60;
 

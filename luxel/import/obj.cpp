@@ -75,6 +75,15 @@ Found read_text(ObjText& in) {
   return found;
 }
 
+/// Brings vertices that lie far from the file's origin near another one, which it returns.
+DVec3 take_origin_off(Found& found) {
+  DBox3 box;
+  for (const Corner& corner : found.corners) box.extend(found.positions[corner[0] - 1]);
+  const DVec3 origin = origin_for(box);
+  for (DVec3& p : found.positions) p = p - origin;
+  return origin;
+}
+
 // Materials.
 
 struct Reading {
@@ -265,16 +274,20 @@ void warn_of(const OddFaces& odd, const SourceFile& source, std::vector<std::str
 
 }  // namespace
 
-Result<Imported> read_obj(const SourceFile& source) {
+Result<Imported> read_obj(const SourceFile& source, ExactPlaces& exact) {
   Imported out;
   LUXEL_TRY(ObjText in, plain_obj(source, out.warnings));
-  const Found found = read_text(in);
+  Found found = read_text(in);
+  const DVec3 near = take_origin_off(found);
   Reading reading{source, in, out, {source, out}};
   LUXEL_TRY_STATUS(read_materials(found, reading));
   out.is_smoothed = in.states_smoothing && source.smooths_by_groups;
   OddFaces odd;
   append_groups(found, reading, odd);
   warn_of(odd, source, out.warnings);
+  exact.instances.assign(out.scene.instances.size(),
+                         to_double(source.world_from_file) * moved_by(near));
+  exact.is_relative = near != DVec3{};
   out.about_lost_lights =
       "an .obj file can hold no lights except emissive materials (Ke in its .mtl)";
   return out;

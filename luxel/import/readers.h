@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "luxel/base/result.h"
+#include "luxel/import/far_scene.h"
 #include "luxel/import/import.h"
 #include "luxel/import/reading_memory.h"
 #include "luxel/import/scene_files.h"
@@ -29,9 +30,10 @@ struct SourceFile {
 /// An error that lists what can be read when this is not among it.
 Status check_extension(const SourceFile& source);
 
-Result<Imported> read_gltf(const SourceFile& source);
-Result<Imported> read_obj(const SourceFile& source);
-Result<Imported> read_with_assimp(const SourceFile& source);
+/// The readers also say where they have put things, before anything was rounded.
+Result<Imported> read_gltf(const SourceFile& source, ExactPlaces& exact);
+Result<Imported> read_obj(const SourceFile& source, ExactPlaces& exact);
+Result<Imported> read_with_assimp(const SourceFile& source, ExactPlaces& exact);
 
 /// Assimp's readers trust their input, and Debian's build aborts where an assertion fails: what can
 /// be told cheaply is told before. Errors: NaN, index out of range, a file that ends early.

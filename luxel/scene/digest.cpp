@@ -130,7 +130,7 @@ std::string name_of(const ItemDigest& item, size_t index) {
 
 std::vector<ItemDigest> digests_of(const Scene& scene) {
   const auto& [name, meshes, instances, materials, textures, lights, profiles, cameras, background,
-               environment] = scene;
+               environment, ignored_origin] = scene;
   std::vector<ItemDigest> out;
   append("mesh", meshes, out);
   append("instance", instances, out);

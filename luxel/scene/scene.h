@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 #include "luxel/scene/environment.h"
 #include "luxel/scene/light_profile.h"
 
@@ -166,6 +166,9 @@ struct Scene {
   std::vector<Camera> cameras;
   Rgb background{0, 0, 0};  ///< radiance seen by rays that leave the scene
   Environment environment;  ///< what they see besides; empty: nothing
+  /// The place in the world of the file that (0, 0, 0) of all coordinates here stands for [m]: not 0
+  /// for a scene far from its origin, which the reader has moved. Light does not depend on it.
+  DVec3 origin{};
 };
 
 /// A point of a surface: which instance, which triangle of its mesh, where in it.

@@ -10,6 +10,7 @@
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -55,7 +56,8 @@ nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
   const std::vector<uint16_t>& samples = bake.light.samples;
   const size_t worst = size_t(std::max_element(errors.begin(), errors.end()) - errors.begin());
   const atlas::Texel& texel = bake.map.texels[worst];
-  const Vec3 at = scene::world_position(bake.scene, texel.sample);
+  const DVec3 at =
+      scene::in_world(bake.scene, scene::world_position(bake.scene, texel.sample));
   const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
   const double all = std::accumulate(samples.begin(), samples.end(), 0.0);
   nlohmann::json out = {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "luxel/display/fit_camera.h"
+#include "luxel/scene/origin.h"
 #include "luxel/scene/brightness.h"
 #include "luxel/scene/held_range.h"
 #include "luxel/trace/camera_rays.h"
@@ -132,9 +133,11 @@ Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Sce
                                     const trace::RayTracer& tracer, const std::string& file,
                                     std::vector<std::string>* warnings) {
   if (choice.eye) {
-    if (!scene::has_unit_vector(*choice.eye - choice.look_at))
+    const Vec3 eye = scene::in_scene(scene, *choice.eye),
+               look_at = scene::in_scene(scene, choice.look_at);
+    if (!scene::has_unit_vector(eye - look_at))
       return fail(ErrorCode::bad_setting, "--eye and --look-at are the same point");
-    return camera_at(*choice.eye, choice.look_at, float(choice.fov_deg) * kPi / 180);
+    return camera_at(eye, look_at, float(choice.fov_deg) * kPi / 180);
   }
   LUXEL_TRY_STATUS(check_view(choice.view, scene, file));
   if (const auto from = viewpoint_of(choice.view))

@@ -17,8 +17,8 @@ struct CameraChoice {
   /// `name`.
   std::string view = {};
   std::string name = {};         ///< of a camera of the scene; empty: the first, else a fitted one
-  std::optional<Vec3> eye = {};  ///< instead of a camera of the scene
-  Vec3 look_at{};
+  std::optional<DVec3> eye = {};  ///< in the world of the file; instead of a camera of the scene
+  DVec3 look_at{};
   double fov_deg = 45;
   float aspect = 4.0f / 3;         ///< of the picture
   std::string asked = "--camera";  ///< what messages call the choice of a name

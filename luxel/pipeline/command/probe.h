@@ -28,7 +28,7 @@ struct ProbeSettings {
   std::filesystem::path scene;
   std::filesystem::path from;  ///< folder of a bake, of ProbeMethod::bake
   ProbeMethod method = ProbeMethod::paths;
-  Vec3 at{};                     ///< the nearest surface is looked at
+  DVec3 at{};                    ///< in the world of the file; the nearest surface is looked at
   std::optional<Vec3> normal;    ///< only surfaces that face about there
   bool in_air = false;           ///< `at` itself is looked at; facing `normal`, or up
   std::filesystem::path output;  ///< hierarchical: a .png with the backprojections; empty: none
@@ -57,7 +57,8 @@ struct ProbedSource {
 /// What is known of the light at a point of a surface, or in the air.
 struct Probed {
   std::string name, material;  ///< of the surface; empty in the air
-  Vec3 position{}, normal{};
+  DVec3 position{};                   ///< in the world of the file
+  Vec3 normal{};
   float distance_m = 0;               ///< from `at`
   Rgb irradiance;                     ///< E [W/m^2]
   Rgb standard_error;                 ///< of that, at most; hierarchical: by paths beside it

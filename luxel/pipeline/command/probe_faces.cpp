@@ -11,6 +11,7 @@
 #include "luxel/display/contact_sheet.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/solver/hierarchical.h"
+#include "luxel/scene/origin.h"
 #include "luxel/solve/hierarchical/represent.h"
 #include "luxel/solve/hierarchical/surface.h"
 
@@ -91,11 +92,11 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Clock::time_point start
   std::optional<DVec3> normal;
   if (s.normal) normal = normalize(to_double(*s.normal));
   const hierarchical::FacePoint nearest =
-      hierarchical::nearest_face_point(solution.faces, to_double(s.at), normal);
+      hierarchical::nearest_face_point(solution.faces, s.at - scene.origin, normal);
   const double diagonal_m = double(solution.diagonal_m);
   const double distance_m = nearest.face == hierarchical::kNone
                                 ? double(INFINITY)
-                                : length(nearest.position - to_double(s.at));
+                                : length(nearest.position - (s.at - scene.origin));
   if (!(distance_m <= kFarFromSurfaces * diagonal_m))
     return Failure{far_from_surfaces(s, diagonal_m, distance_m)};
   const hierarchical::Face& face = solution.faces.faces[nearest.face];
@@ -118,7 +119,7 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Clock::time_point start
   LUXEL_TRY_STATUS(check_held(scene, to_float(nearest.position), out));
   if (!(max_component(exact[0]) > 0)) out.warnings.push_back(no_light_arrives("the point"));
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
-  out.position = to_float(nearest.position), out.normal = to_float(at.normal);
+  out.position = nearest.position + scene.origin, out.normal = to_float(at.normal);
   out.distance_m = float(distance_m);
   // The sources, and what is left of E without them.
   const std::vector<hierarchical::Seen> seen =

@@ -11,6 +11,7 @@
 #include "luxel/pipeline/command/nearest_surface.h"
 #include "luxel/pipeline/command/probe.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/origin.h"
 #include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -91,15 +92,16 @@ Result<Place> find_place(const ProbeSettings& s, const scene::Scene& scene, Prob
   if (s.in_air) {
     const Vec3 n = normalize(s.normal.value_or(Vec3{0, 1, 0}));
     out.position = s.at, out.normal = n;
-    return Place{s.at, n, n};
+    return Place{scene::in_scene(scene, s.at), n, n};
   }
-  const NearestSurface nearest = nearest_surface(scene, s.at, s.normal);
+  const NearestSurface nearest =
+      nearest_surface(scene, scene::in_scene(scene, s.at), s.normal);
   const double diagonal_m = double(scene::world_bounds(scene).diagonal());
   if (!(double(nearest.distance_m) <= kFarFromSurfaces * diagonal_m))
     return Failure{far_from_surfaces(s, diagonal_m, double(nearest.distance_m))};
   out.name = name_of(scene, nearest.point.instance);
   out.material = scene::material_at(scene, nearest.point).name;
-  out.position = nearest.position, out.normal = nearest.normal;
+  out.position = scene::in_world(scene, nearest.position), out.normal = nearest.normal;
   out.distance_m = nearest.distance_m;
   return Place{nearest.start, nearest.normal, nearest.geometric_normal};
 }
@@ -269,7 +271,8 @@ Result<Probed> probe_in_bake(const ProbeSettings& s, Progress& progress) {
   out.warnings = bake->warnings, out.unit = bake->unit;
   LUXEL_TRY(const Place place, find_place(s, bake->baked, out));
   if (!s.in_air) {
-    const NearestSurface nearest = nearest_surface(bake->baked, s.at, s.normal);
+    const NearestSurface nearest =
+        nearest_surface(bake->baked, scene::in_scene(bake->baked, s.at), s.normal);
     out.interpolated = lightmap_of(*bake, nearest.point);
   }
   const Look look = look_from(s, *bake->baked_tracer, place);

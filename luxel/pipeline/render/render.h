@@ -34,8 +34,8 @@ struct RenderSettings {
       "lightmap";      ///< a name of luxel/pipeline/render/techniques.h, or kAllTechniques
   std::string camera;  ///< by name; empty: the first, else a fitted one
   std::string view;    ///< instead: CameraChoice::view
-  std::optional<Vec3> eye;
-  Vec3 look_at{};
+  std::optional<DVec3> eye;  ///< in the world of the file
+  DVec3 look_at{};
   double fov_deg = 45;
   int width = 960, height = 720;  ///< of a contact sheet: each tile's
   import::ImportParams reading;

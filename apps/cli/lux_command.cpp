@@ -18,9 +18,13 @@ struct LuxOptions {
   pipeline::LuxSettings settings;
 };
 
-nlohmann::json point_json(Vec3 p) { return {p.x, p.y, p.z}; }
+/// A place of a scene with this origin, in the world of its file.
+nlohmann::json point_json(Vec3 p, DVec3 origin) {
+  const DVec3 at = scene::in_world(origin, p);
+  return {at.x, at.y, at.z};
+}
 
-nlohmann::json json_of(const pipeline::RoomLight& room) {
+nlohmann::json json_of(const pipeline::RoomLight& room, DVec3 origin) {
   return {{"points", room.points},
           {"area_m2", room.area_m2},
           {"mean", room.mean},
@@ -29,8 +33,8 @@ nlohmann::json json_of(const pipeline::RoomLight& room) {
           {"uniformity", room.uniformity()},
           {"standard_error_of_mean", room.standard_error},
           {"largest_standard_error", room.largest_error},
-          {"minimum_at", point_json(room.minimum_at)},
-          {"maximum_at", point_json(room.maximum_at)}};
+          {"minimum_at", point_json(room.minimum_at, origin)},
+          {"maximum_at", point_json(room.maximum_at, origin)}};
 }
 
 nlohmann::json json_of(const pipeline::LuxSettings& s, const pipeline::LuxReport& report) {
@@ -40,12 +44,13 @@ nlohmann::json json_of(const pipeline::LuxSettings& s, const pipeline::LuxReport
                      {"warnings", report.warnings}, {"files", nlohmann::json::array()}};
   for (const pipeline::LitFloor& lit : report.floors) {
     const pipeline::Floor& floor = lit.floor;
-    nlohmann::json one = json_of(lit.all);
-    one["y"] = floor.y;
-    one["bounds_xz"] = {{floor.x0, floor.z0}, {floor.x1, floor.z1}};
+    nlohmann::json one = json_of(lit.all, report.origin);
+    const DVec3 o = report.origin;
+    one["y"] = floor.y + o.y;
+    one["bounds_xz"] = {{floor.x0 + o.x, floor.z0 + o.z}, {floor.x1 + o.x, floor.z1 + o.z}};
     one["spacing_xz_m"] = {floor.cell_x(), floor.cell_z()};
     one["left_out"] = {{"in_solids", floor.in_solids}, {"in_boundary", floor.in_boundary}};
-    for (const pipeline::RoomLight& room : lit.rooms) one["rooms"].push_back(json_of(room));
+    for (const pipeline::RoomLight& room : lit.rooms) one["rooms"].push_back(json_of(room, report.origin));
     out["floors"].push_back(std::move(one));
   }
   for (const std::filesystem::path& output : s.outputs) out["files"].push_back(output.string());
@@ -59,13 +64,14 @@ void print_room(const std::string& name, const pipeline::RoomLight& room) {
                           .c_str());
 }
 
-void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::LitFloor& lit) {
+void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::LitFloor& lit,
+                 double origin_y) {
   const pipeline::Floor& floor = lit.floor;
   std::printf(
       "%s\n",
       fmt::format("\nfloor {} at Y = {:.3f} m, plane {:g} m above it, points {:.3g} m by {:.3g} m "
                   "apart; left out: {} in solids, {} within {:g} m of walls",
-                  number, floor.y, s.plane.plane_m, floor.cell_x(), floor.cell_z(), floor.in_solids,
+                  number, floor.y + origin_y, s.plane.plane_m, floor.cell_x(), floor.cell_z(), floor.in_solids,
                   floor.in_boundary, s.plane.boundary_m)
           .c_str());
   std::printf("%-10s %7s %8s %10s %10s %10s %8s %10s\n", "", "points", "m^2", "mean", "minimum",
@@ -83,7 +89,8 @@ void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::
 
 void print(const pipeline::LuxSettings& s, const pipeline::LuxReport& report) {
   std::printf("unit: %s; %s\n", report.unit.symbol.c_str(), report.unit.reason.c_str());
-  for (size_t f = 0; f < report.floors.size(); ++f) print_floor(f + 1, s, report.floors[f]);
+  for (size_t f = 0; f < report.floors.size(); ++f) 
+    print_floor(f + 1, s, report.floors[f], report.origin.y);
   std::printf(
       "\nU0: minimum / mean; error: standard error of the mean due to this command's rays\n");
 }

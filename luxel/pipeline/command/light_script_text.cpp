@@ -1,22 +1,16 @@
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "luxel/pipeline/command/light_script.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::pipeline {
 namespace {
 
 using nlohmann::ordered_json;
 
-/// The double of the fewest digits that is read as this float.
-double short_number(float value) {
-  const std::string digits = fmt::format("{}", value);
-  double out = value;
-  std::from_chars(digits.data(), digits.data() + digits.size(), out);
-  return out;
-}
+using scene::short_number;
 
 ordered_json numbers_of(Vec3 v) {
   return {short_number(v.x), short_number(v.y), short_number(v.z)};

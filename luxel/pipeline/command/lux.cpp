@@ -89,7 +89,10 @@ std::string lux_csv(const LuxReport& report) {
     const LitFloor& lit = report.floors[f];
     for (size_t i = 0; i < lit.floor.points.size(); ++i) {
       const Vec3 p = lit.floor.points[i].position;
-      csv += fmt::format("{},{},{},{:.6g},{:.3g},{},{}\n", p.x, p.y, p.z, lit.illuminance[i],
+      const DVec3 o = report.origin;
+      using scene::short_number;
+      csv += fmt::format("{},{},{},{:.6g},{:.3g},{},{}\n", short_number(p.x, o.x),
+                         short_number(p.y, o.y), short_number(p.z, o.z), lit.illuminance[i],
                          lit.standard_error[i], f + 1, lit.floor.points[i].room + 1);
     }
   }
@@ -104,6 +107,7 @@ Result<LuxReport> lux(const LuxSettings& s, Progress& progress) {
             read_lit_bake(s.scene, s.reading, s.from, s.outside));
   LuxReport report;
   report.warnings = bake->warnings, report.unit = bake->unit;
+  report.origin = bake->baked.origin;
   // The bake's scene: surfaces with two sides have both of them there.
   LUXEL_TRY(std::vector<Floor> floors,
             find_work_planes(bake->baked, *bake->baked_tracer, s.plane, progress));

@@ -50,6 +50,7 @@ struct LitFloor {
 
 struct LuxReport {
   std::vector<LitFloor> floors;  ///< those with points
+  DVec3 origin;                  ///< Scene::origin, which places of floors are relative to
   LightUnit unit;
   uint64_t rays = 0;
   std::vector<std::string> warnings;

@@ -139,9 +139,10 @@ std::vector<Level> floors_among(std::vector<Level> levels) {
 
 /// The levels nearest to heights asked for.
 Result<std::vector<Level>> floors_at(std::span<const double> heights,
-                                     const std::vector<Level>& levels) {
+                                     const std::vector<Level>& levels, double origin_y) {
   std::vector<Level> out;
-  for (const double y : heights) {
+  for (const double stated : heights) {
+    const double y = stated - origin_y;
     const auto found = std::find_if(levels.begin(), levels.end(), [y](const Level& level) {
       return y >= level.low - kOneFloor_m && y <= level.high + kOneFloor_m;
     });
@@ -149,7 +150,7 @@ Result<std::vector<Level>> floors_at(std::span<const double> heights,
       return fail(ErrorCode::bad_setting,
                   "--floor {}: no surface faces up at this height; leave it out to see which "
                   "floors luxel finds",
-                  y);
+                  stated);
     out.push_back(*found);
   }
   return out;
@@ -319,7 +320,7 @@ Result<std::vector<Floor>> find_work_planes(const scene::Scene& scene,
     found = survey(scene, tracer, params.plane_m, false);
   std::vector<Level> levels = levels_of(std::move(found.steps));
   if (!params.floors.empty()) {
-    LUXEL_TRY(levels, floors_at(params.floors, levels));
+    LUXEL_TRY(levels, floors_at(params.floors, levels, scene.origin.y));
   } else {
     levels = floors_among(std::move(levels));
   }

@@ -11,6 +11,7 @@
 #include "luxel/pipeline/solver/hierarchical.h"
 #include "luxel/pipeline/solver/matrix.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/scene/origin.h"
 #include "luxel/validate/random_scenes.h"
 #include "luxel/validate/stated_errors.h"
 #include "luxel/viewfactor/random_contacts.h"
@@ -86,7 +87,8 @@ Status add_probe(const JudgedScene& s, Accounts& accounts, Progress& progress) {
   size_t i = hash64(s.seed, 0x9b0be) % elements.size();
   while (s.judged.hidden[i]) i = (i + 1) % elements.size();
   pipeline::ProbeSettings settings;
-  settings.at = elements.position[i], settings.normal = elements.normal[i], settings.in_air = true;
+  settings.at = scene::in_world(s.scene.scene, elements.position[i]);
+  settings.normal = elements.normal[i], settings.in_air = true;
   settings.max_error = 0.02, settings.time_budget_s = 1e6, settings.most_rounds = kProbeRounds;
   LUXEL_TRY(const pipeline::Probed probed,
             pipeline::probe_by_paths(settings, s.scene.scene, {}, progress));

@@ -53,7 +53,7 @@ TEST_F(PageShaders, Sh1IsTheLightOfTwoSuns) {
   scene::Scene scene;
   scene::add_material(scene, "grey", {0.5f, 0.5f, 0.5f});
   scene::add_rectangle(scene, {-1, 1, -1, 1}, 0, true, 0);
-  const Vec3 red_from = normalize({1, 2, 0}), blue_from = normalize({-1, 1, 1});
+  const Vec3 red_from = normalize(Vec3{1, 2, 0}), blue_from = normalize(Vec3{-1, 1, 1});
   const Rgb red{4, 1, 0}, blue{0, 1, 7};
   for (const auto& [from, color] : {std::pair(red_from, red), std::pair(blue_from, blue)}) {
     scene::PunctualLight sun;

@@ -295,7 +295,7 @@ TEST_F(ViewHtml, KnowsEveryMaterial) {
 // down.
 TEST_F(ViewHtml, StartsWithAnyCamera) {
   std::vector<scene::Camera> cameras(4);
-  const Vec3 aside = normalize({0.2f, 0.1f, 1}), up = normalize({0.5f, 1, 0.3f});
+  const Vec3 aside = normalize(Vec3{0.2f, 0.1f, 1}), up = normalize(Vec3{0.5f, 1, 0.3f});
   const Vec3 right = normalize(cross(up, aside));
   cameras[0].world_from_camera = translation({1.8f, 1.7f, 4}) * scaling({2, 3, 4});
   cameras[0].orthographic_height_m = 4;
@@ -347,7 +347,7 @@ TEST_F(ViewHtml, FacesSeenEdgeOnHaveTheirOwnLight) {
   scene.lights[0].kind = scene::PunctualLight::Kind::directional;
   scene.lights[0].intensity = {3, 3, 3};
   scene.cameras.emplace_back();
-  const Vec3 right = normalize({1, 0, 0.1f}), up = normalize({0.1f, 0, -1});
+  const Vec3 right = normalize(Vec3{1, 0, 0.1f}), up = normalize(Vec3{0.1f, 0, -1});
   scene.cameras[0].world_from_camera = from_columns(right, up, {0, 1, 0}, {0, 4, 0});
   const ScratchFolder s;
   ASSERT_TRUE(write_file_atomically(s.path / "block.glb", *export_::scene_glb(scene)));

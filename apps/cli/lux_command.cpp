@@ -3,6 +3,7 @@
 
 #include "apps/cli/cli.h"
 #include "luxel/pipeline/command/lux.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::cli {
 namespace {
@@ -50,7 +51,8 @@ nlohmann::json json_of(const pipeline::LuxSettings& s, const pipeline::LuxReport
     one["bounds_xz"] = {{floor.x0 + o.x, floor.z0 + o.z}, {floor.x1 + o.x, floor.z1 + o.z}};
     one["spacing_xz_m"] = {floor.cell_x(), floor.cell_z()};
     one["left_out"] = {{"in_solids", floor.in_solids}, {"in_boundary", floor.in_boundary}};
-    for (const pipeline::RoomLight& room : lit.rooms) one["rooms"].push_back(json_of(room, report.origin));
+    for (const pipeline::RoomLight& room : lit.rooms)
+      one["rooms"].push_back(json_of(room, report.origin));
     out["floors"].push_back(std::move(one));
   }
   for (const std::filesystem::path& output : s.outputs) out["files"].push_back(output.string());
@@ -71,8 +73,8 @@ void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::
       "%s\n",
       fmt::format("\nfloor {} at Y = {:.3f} m, plane {:g} m above it, points {:.3g} m by {:.3g} m "
                   "apart; left out: {} in solids, {} within {:g} m of walls",
-                  number, floor.y + origin_y, s.plane.plane_m, floor.cell_x(), floor.cell_z(), floor.in_solids,
-                  floor.in_boundary, s.plane.boundary_m)
+                  number, floor.y + origin_y, s.plane.plane_m, floor.cell_x(), floor.cell_z(),
+                  floor.in_solids, floor.in_boundary, s.plane.boundary_m)
           .c_str());
   std::printf("%-10s %7s %8s %10s %10s %10s %8s %10s\n", "", "points", "m^2", "mean", "minimum",
               "maximum", "U0", "error");
@@ -89,7 +91,7 @@ void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::
 
 void print(const pipeline::LuxSettings& s, const pipeline::LuxReport& report) {
   std::printf("unit: %s; %s\n", report.unit.symbol.c_str(), report.unit.reason.c_str());
-  for (size_t f = 0; f < report.floors.size(); ++f) 
+  for (size_t f = 0; f < report.floors.size(); ++f)
     print_floor(f + 1, s, report.floors[f], report.origin.y);
   std::printf(
       "\nU0: minimum / mean; error: standard error of the mean due to this command's rays\n");

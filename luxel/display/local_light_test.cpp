@@ -44,9 +44,9 @@ TEST(LocalColor, DiffuseLightFollowsTheCosine) {
 // print's formula would put it back at the lamp.
 TEST(LocalColor, TheHighlightStandsWhereAMirrorSendsTheLight) {
   LocalLights lights = kFromAbove;
-  lights.direction = normalize({1, 0, -1});
+  lights.direction = normalize(Vec3{1, 0, -1});
   const Rgb ambient = lights.ambient * kPaint.material;
-  const Vec3 mirror = normalize({1, 0, 1}), lamp = normalize({-1, 0, 1});
+  const Vec3 mirror = normalize(Vec3{1, 0, 1}), lamp = normalize(Vec3{-1, 0, 1});
   expect_color(local_color(cas, kPaint, lights, kUp, mirror),
                ambient + lights.light * kPaint.specular);
   expect_color(local_color(cas, kPaint, lights, kUp, lamp), ambient);
@@ -57,7 +57,7 @@ TEST(LocalColor, TheHighlightStandsWhereAMirrorSendsTheLight) {
 }
 
 TEST(LocalColor, WhatIsTurnedAwayHasOnlyAmbientLight) {
-  for (const Vec3 viewer : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, normalize({1, 0, -1})})
+  for (const Vec3 viewer : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, normalize(Vec3{1, 0, -1})})
     for (const LocalTechnique t : {cad, cas, cads})
       expect_color(local_color(t, kPaint, kFromAbove, -kUp, viewer),
                    kFromAbove.ambient * kPaint.material);

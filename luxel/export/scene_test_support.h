@@ -16,7 +16,7 @@ inline scene::Mesh grid_mesh() {
   for (int y = 0; y <= 6; ++y)
     for (int x = 0; x <= 6; ++x) {
       mesh.positions.push_back({float(x), random.next(), float(y)});
-      mesh.normals.push_back(normalize({random.next() - 0.5f, 1, random.next() - 0.5f}));
+      mesh.normals.push_back(normalize(Vec3{random.next() - 0.5f, 1, random.next() - 0.5f}));
       mesh.uv0.push_back({random.next(), random.next()});
       mesh.colors.push_back({random.next(), random.next(), random.next()});
     }
@@ -85,7 +85,7 @@ inline scene::Scene rich_scene() {
   scene.lights[0].name = "bulb", scene.lights[0].position = {1, 2, 3};
   scene.lights[0].range_m = 7;
   scene.lights[1].kind = Kind::spot, scene.lights[1].intensity = {4, 8, 2};
-  scene.lights[1].direction = normalize({1, -2, 0.5f});
+  scene.lights[1].direction = normalize(Vec3{1, -2, 0.5f});
   scene.lights[1].position = {-1, 4, 0};
   scene.lights[2].kind = Kind::directional, scene.lights[2].angular_radius_rad = 0.00465f;
   scene.cameras.resize(2);

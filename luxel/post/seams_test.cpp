@@ -38,7 +38,7 @@ TEST(FindSeams, CreasesAreLeftAlone) {
 
 TEST(FindSeams, SmoothNormalsMakeASeamOfACrease) {
   scene::Scene scene = two_squares(0.4f, true);
-  const Vec3 middle = normalize({-std::sin(0.2f), 0, std::cos(0.2f)});
+  const Vec3 middle = normalize(Vec3{-std::sin(0.2f), 0, std::cos(0.2f)});
   scene.meshes[0].normals.assign(8, middle);
   EXPECT_EQ(find_seams(scene, two_charts(kSheetSide)).size(), 1u);
 }

@@ -17,8 +17,8 @@ inline DVec3 in_world(const Scene& scene, Vec3 p) { return in_world(scene.origin
 /// The coordinates in the scene of a place in the world of its file [m].
 inline Vec3 in_scene(const Scene& scene, DVec3 p) { return to_float(p - scene.origin); }
 
-/// The double of the fewest digits that tells one coordinate in the world of the file: less `origin`
-/// it is `value` again.
+/// The double of the fewest digits that tells one coordinate in the world of the file: less
+/// `origin` it is `value` again.
 double short_number(float value, double origin = 0);
 
 }  // namespace luxel::scene

@@ -166,8 +166,8 @@ struct Scene {
   std::vector<Camera> cameras;
   Rgb background{0, 0, 0};  ///< radiance seen by rays that leave the scene
   Environment environment;  ///< what they see besides; empty: nothing
-  /// The place in the world of the file that (0, 0, 0) of all coordinates here stands for [m]: not 0
-  /// for a scene far from its origin, which the reader has moved. Light does not depend on it.
+  /// The place in the world of the file that (0, 0, 0) of all coordinates here stands for [m]: not
+  /// 0 for a scene far from its origin, which the reader has moved. Light does not depend on it.
   DVec3 origin{};
 };
 

@@ -56,8 +56,7 @@ nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
   const std::vector<uint16_t>& samples = bake.light.samples;
   const size_t worst = size_t(std::max_element(errors.begin(), errors.end()) - errors.begin());
   const atlas::Texel& texel = bake.map.texels[worst];
-  const DVec3 at =
-      scene::in_world(bake.scene, scene::world_position(bake.scene, texel.sample));
+  const DVec3 at = scene::in_world(bake.scene, scene::world_position(bake.scene, texel.sample));
   const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
   const double all = std::accumulate(samples.begin(), samples.end(), 0.0);
   nlohmann::json out = {

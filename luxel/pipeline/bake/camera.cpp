@@ -6,9 +6,9 @@
 #include <span>
 
 #include "luxel/display/fit_camera.h"
-#include "luxel/scene/origin.h"
 #include "luxel/scene/brightness.h"
 #include "luxel/scene/held_range.h"
+#include "luxel/scene/origin.h"
 #include "luxel/trace/camera_rays.h"
 
 namespace luxel::pipeline {

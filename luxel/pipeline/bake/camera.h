@@ -16,7 +16,7 @@ struct CameraChoice {
   /// interior, exterior, front or top (display::Viewpoint), or a camera of the scene; before
   /// `name`.
   std::string view = {};
-  std::string name = {};         ///< of a camera of the scene; empty: the first, else a fitted one
+  std::string name = {};          ///< of a camera of the scene; empty: the first, else a fitted one
   std::optional<DVec3> eye = {};  ///< in the world of the file; instead of a camera of the scene
   DVec3 look_at{};
   double fov_deg = 45;

@@ -28,7 +28,7 @@ TEST(ChooseCamera, LooksFromTheEyeAtThePlace) {
   for (const Vec3 look_at : {Vec3{1, 2, 8}, {4, 2, -1}, {1, -7, 3}, {1, 9, 3}, {0, 0, 0}}) {
     const Vec3 eye{1, 2, 3};
     CameraChoice choice;
-    choice.eye = eye, choice.look_at = look_at, choice.fov_deg = 60;
+    choice.eye = to_double(eye), choice.look_at = to_double(look_at), choice.fov_deg = 60;
     const auto camera = room.camera(choice);
     ASSERT_TRUE(camera);
     const Mat34& pose = camera->world_from_camera;

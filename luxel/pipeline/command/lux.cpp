@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/lit_bake.h"
 #include "luxel/pipeline/command/lux_plan.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::pipeline {
 namespace {

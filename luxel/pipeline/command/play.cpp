@@ -16,6 +16,7 @@
 #include "luxel/pipeline/command/light_script.h"
 #include "luxel/post/dilate.h"
 #include "luxel/scene/off_surface.h"
+#include "luxel/scene/origin.h"
 #include "luxel/solve/matrix/live_light.h"
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/solve/matrix/relighter.h"
@@ -89,7 +90,8 @@ Result<scene::Camera> camera_of(const LightScript& script, const scene::Scene& s
   choice.asked = "the script's camera";
   if (const auto* name = std::get_if<std::string>(&script.camera)) choice.name = *name;
   if (const auto* view = std::get_if<LightScript::View>(&script.camera))
-    choice.eye = view->eye, choice.look_at = view->look_at, choice.fov_deg = view->fov_deg;
+    choice.eye = scene::in_world(scene, view->eye),
+    choice.look_at = scene::in_world(scene, view->look_at), choice.fov_deg = view->fov_deg;
   choice.aspect = float(script.width) / float(script.height);
   return choose_camera(choice, scene, tracer, file);
 }

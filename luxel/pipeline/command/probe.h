@@ -57,7 +57,7 @@ struct ProbedSource {
 /// What is known of the light at a point of a surface, or in the air.
 struct Probed {
   std::string name, material;  ///< of the surface; empty in the air
-  DVec3 position{};                   ///< in the world of the file
+  DVec3 position{};            ///< in the world of the file
   Vec3 normal{};
   float distance_m = 0;               ///< from `at`
   Rgb irradiance;                     ///< E [W/m^2]

@@ -94,8 +94,7 @@ Result<Place> find_place(const ProbeSettings& s, const scene::Scene& scene, Prob
     out.position = s.at, out.normal = n;
     return Place{scene::in_scene(scene, s.at), n, n};
   }
-  const NearestSurface nearest =
-      nearest_surface(scene, scene::in_scene(scene, s.at), s.normal);
+  const NearestSurface nearest = nearest_surface(scene, scene::in_scene(scene, s.at), s.normal);
   const double diagonal_m = double(scene::world_bounds(scene).diagonal());
   if (!(double(nearest.distance_m) <= kFarFromSurfaces * diagonal_m))
     return Failure{far_from_surfaces(s, diagonal_m, double(nearest.distance_m))};

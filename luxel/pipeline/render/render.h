@@ -31,9 +31,9 @@ struct RenderSettings {
   std::filesystem::path from;    ///< folder of a bake: baked.glb and lightmap.exr are read
   std::filesystem::path output;  ///< .png (display values), .exr or .hdr (radiance)
   std::string technique =
-      "lightmap";      ///< a name of luxel/pipeline/render/techniques.h, or kAllTechniques
-  std::string camera;  ///< by name; empty: the first, else a fitted one
-  std::string view;    ///< instead: CameraChoice::view
+      "lightmap";            ///< a name of luxel/pipeline/render/techniques.h, or kAllTechniques
+  std::string camera;        ///< by name; empty: the first, else a fitted one
+  std::string view;          ///< instead: CameraChoice::view
   std::optional<DVec3> eye;  ///< in the world of the file
   DVec3 look_at{};
   double fov_deg = 45;

@@ -17,8 +17,6 @@ struct InfoOptions {
   bool devices = false;
 };
 
-nlohmann::json vector_json(Vec3 v) { return {v.x, v.y, v.z}; }
-
 nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string>& warnings) {
   size_t emissive = 0, drawn = 0, stored = 0;
   double area = 0;

@@ -96,7 +96,9 @@ TEST_F(Playing, TheLightGoesWithTheLamp) {
 
 TEST_F(Playing, WithoutLightIsBlack) {
   const std::string dark = R"("emission": [{"material": "light", "radiance": [0, 0, 0]}])";
-  const std::string head = R"({"frames": 1, "size": [16, 12], "exposure": 0, )";
+  // From inside of the box: beside it there is nothing, which is grey.
+  const std::string head = R"({"frames": 1, "size": [16, 12], "exposure": 0,
+      "camera": {"eye": [0.278, 0.273, 0.05], "look_at": [0.278, 0.273, 0.5]}, )";
   ASSERT_EQ(play(lxr(), s.write("dark.json", head + dark + "}"), s.path / "dark").code, 0);
   EXPECT_EQ(mean_of(picture(s.path / "dark" / "frame-0000.png"), 0, 16), 0);
   // As baked: its lamp of 17, 12, 4 is white in the picture, and the box is lit.

@@ -147,4 +147,19 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
   return draw_seen(scene, tracer, camera, seen_at, params, progress);
 }
 
+bool has_void(const scene::Scene& scene) {
+  return scene.environment.empty() && !(max_component(scene.background) > 0);
+}
+
+image::Image8 on_screen(const scene::Scene& scene, image::Image picture, float exposure,
+                        ToneMap curve) {
+  if (has_void(scene))
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const float beside = (1 - picture.at(x, y)[3]) / exposure;
+        picture.set_rgb(x, y, picture.rgb(x, y) + kGreyOfNothing * beside);
+      }
+  return tone_map(picture, exposure, curve);
+}
+
 }  // namespace luxel::display

@@ -6,6 +6,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/display/tone_map.h"
 #include "luxel/image/image.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
@@ -42,5 +43,12 @@ Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
 Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
                           const scene::Camera& camera, const IrradianceAt& irradiance_at,
                           const DrawParams& params, Progress& progress);
+
+/// Whether there is nothing behind a scene's surfaces.
+bool has_void(const scene::Scene& scene);
+
+/// tone_map() of a picture of radiance; where has_void() there is kGreyOfNothing beside surfaces.
+image::Image8 on_screen(const scene::Scene& scene, image::Image picture, float exposure,
+                        ToneMap curve = ToneMap::shoulder);
 
 }  // namespace luxel::display

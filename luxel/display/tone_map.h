@@ -33,6 +33,10 @@ float exposure_of_stops(double stops);
 /// saturation stay; what is brighter than 1 moves slowly to white.
 Rgb compress(Rgb exposed);
 
+/// Exposed: what pictures show where a scene has nothing behind its surfaces. The curve leaves it
+/// as it is.
+inline constexpr Rgb kGreyOfNothing{0.2f, 0.2f, 0.2f};
+
 /// c / (k + c) in every channel, k > 0. [Moreno05, section 4.4.2] The paper's k of 0.1 to 0.02 is a
 /// k of 1 with log2(1 / k) = 3.3 to 5.6 stops more.
 Rgb ratio_curve(Rgb exposed, float k = 1);

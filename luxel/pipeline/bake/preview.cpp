@@ -17,13 +17,8 @@ namespace luxel::pipeline {
 namespace {
 
 constexpr int kPreviewHeight = 720;
-/// What the curve of the screen leaves as it is: 48 % and 63 % of its range of values.
-constexpr float kGreyShownAt = 0.2f, kBacksShownAt = 0.35f;
-
-/// Whether there is nothing behind a scene's surfaces.
-bool has_void(const scene::Scene& scene) {
-  return scene.environment.empty() && !(max_component(scene.background) > 0);
-}
+/// Exposed; the curve of the screen leaves it as it is.
+constexpr float kBacksShownAt = 0.35f;
 
 bool is_unseen_back(const scene::Scene& scene, const trace::Hit& hit) {
   return hit.found() && hit.back_face && !scene::material_at(scene, hit.point()).double_sided;
@@ -51,8 +46,9 @@ float shown_exposure(const scene::Scene& scene, const image::Image& picture,
     const float shown_at = std::min(kCard, reflects + std::max(0.0f, reflects - kShownAsItIs));
     exposure = display::readable_exposure(picture) * shown_at / kCard;
   }
-  return has_void(scene) ? std::min(exposure, kLampsShownAt * display::auto_exposure(card, 99))
-                         : exposure;
+  return display::has_void(scene)
+             ? std::min(exposure, kLampsShownAt * display::auto_exposure(card, 99))
+             : exposure;
 }
 
 /// What is there instead of fronts.
@@ -183,14 +179,8 @@ Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer
               display::draw_seen(bake.scene, tracer, camera,
                                  hatched(bake.scene, rays, exposure, seen_at), params, progress));
   }
-  const float grey = kGreyShownAt / exposure;
-  if (has_void(bake.scene))
-    for (int y = 0; y < picture.height; ++y)
-      for (int x = 0; x < picture.width; ++x)
-        picture.set_rgb(x, y,
-                        picture.rgb(x, y) + Rgb{grey, grey, grey} * (1 - picture.at(x, y)[3]));
   bake.view = {camera, params.width, params.height, exposure};
-  bake.preview = display::tone_map(picture, exposure);
+  bake.preview = display::on_screen(bake.scene, picture, exposure);
   if (std::string text = about_preview(bake, outlook, backs, picture); !text.empty())
     bake.warnings.push_back(std::move(text));
   return {};

@@ -212,7 +212,7 @@ Result<std::vector<OutputFile>> draw_frames(const PlaySettings& s, const LightSc
                           1e3 * seconds_since(start)});
     if (k == 0) exposure = exposure_factor(script.exposure, picture);
     files.push_back({s.output / fmt::format("frame-{:04}.png", k),
-                     image::encode_png(display::tone_map(picture, exposure))});
+                     image::encode_png(display::on_screen(view.scene, picture, exposure))});
   }
   return files;
 }

@@ -19,11 +19,13 @@ namespace {
 
 /// Colours of a screen are shown as they are, light over the shoulder, unless it was said
 /// otherwise.
-image::Image8 shown(const Technique& technique, const RenderSettings& s, float exposure,
-                    const image::Image& picture) {
+image::Image8 shown(const Technique& technique, const Subject& subject, const RenderSettings& s,
+                    float exposure, const image::Image& picture) {
   using display::ToneMap;
-  const ToneMap usual = technique.is_light ? ToneMap::shoulder : ToneMap::clamp;
-  return display::tone_map(picture, exposure, s.tone_map.value_or(usual));
+  return technique.is_light
+             ? display::on_screen(subject.scene, picture, exposure,
+                                  s.tone_map.value_or(ToneMap::shoulder))
+             : display::tone_map(picture, exposure, s.tone_map.value_or(ToneMap::clamp));
 }
 
 /// Lines over a picture, as a screen shows them.
@@ -76,7 +78,7 @@ Result<std::vector<std::byte>> one_picture(const Technique& technique, const Sub
     return image::encode_png(values);
   }
   out.exposure = exposure_for(technique, s, picture);
-  image::Image8 on_screen = shown(technique, s, out.exposure, picture);
+  image::Image8 on_screen = shown(technique, subject, s, out.exposure, picture);
   if (!out.overlay.empty()) lay_over(subject, out.overlay, on_screen, progress);
   return image::encode_png(on_screen);
 }
@@ -106,7 +108,8 @@ Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const Rende
       exposure = out.exposure = *exposure_of_light;
     }
     out.tiles.emplace_back(technique.name);
-    tiles.push_back({std::string(technique.name), shown(technique, s, exposure, *picture)});
+    tiles.push_back(
+        {std::string(technique.name), shown(technique, subject, s, exposure, *picture)});
   }
   const image::Image8 sheet = display::contact_sheet(tiles);
   out.width = sheet.width, out.height = sheet.height;

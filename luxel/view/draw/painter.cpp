@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "luxel/display/tone_map.h"
 #include "luxel/image/half.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/draw/among_surfaces.h"
@@ -178,12 +179,11 @@ bool has_technique(const Additions& more, const Frame& frame) {
   return more.techniques && frame.technique;
 }
 
-/// The curve that a frame is shown over. Colours that stand for something are shown as they are.
-display::ToneMap curve_of(const Additions& more, const Frame& frame, bool has_overlay) {
-  const bool is_light = has_technique(more, frame) ? view::is_light(*frame.technique)
-                                                   : frame.show != Show::colour &&
-                                                         !(has_overlay && shows_colors(frame.show));
-  return is_light ? frame.curve : display::ToneMap::clamp;
+/// A frame shows light, or colours that stand for something: those are shown as they are.
+bool shows_light(const Additions& more, const Frame& frame, bool has_overlay) {
+  return has_technique(more, frame)
+             ? view::is_light(*frame.technique)
+             : frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
 }
 
 /// The surfaces, or what is drawn instead of them.
@@ -239,11 +239,14 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   if (canvas.probes && frame.shows_probes)
     draw_probes(device, commands, canvas.shaders.probes, *canvas.probes,
                 has_overlay ? canvas.overlay : nullptr, frame, clip);
-  const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
+  const bool is_light = shows_light(more, frame, has_overlay);
+  BehindPush behind = behind_of(camera, scene, frame, has_overlay);
+  if (is_light && !more.no_surfaces && behind.background == Rgb{} && behind.map_scale == Rgb{})
+    behind.background = display::kGreyOfNothing, behind.exposure = 1;
   gpu::bind(device, commands, canvas.shaders.behind, behind);
   gpu::bind_set(device, commands, canvas.shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
-  const display::ToneMap curve = curve_of(more, frame, has_overlay);
+  const display::ToneMap curve = is_light ? frame.curve : display::ToneMap::clamp;
   for (const DeviceShapes& shapes : more.shapes)
     draw_shapes(device, commands, canvas.shaders.shapes, shapes,
                 {clip, camera.orthographic, {float(size.width), float(size.height)}, curve});

@@ -203,7 +203,8 @@ TEST_F(PainterTest, TheSurroundingsStandWhereDisplayDrawsThem) {
 
 // Perspective and parallel cameras, turned, and narrower or wider than the picture.
 TEST_F(PainterTest, CamerasSeeWhatDisplayDraws) {
-  const LitSquare lit;
+  LitSquare lit;
+  lit.scene.background = {0.1f, 0.1f, 0.1f};
   const auto tracer = trace::RayTracer::build(lit.scene);
   ASSERT_TRUE(tracer);
   Frame frame;

@@ -2,9 +2,9 @@
 //
 // First inside or outside: a scene is looked at from inside when a good part of the places in it
 // lie in rooms that have light, or when it has rooms with light and none outside. Then candidates
-// stand in these rooms, or around the scene. Each looks with a coarse grid of rays and is scored by
-// how much of the scene's front faces it shows, how finely what it shows is made, and how much of
-// it lies in the light.
+// stand in these rooms, in the streets of a town, or around the scene. Each looks with a coarse
+// grid of rays and is scored by how much of the scene's front faces it shows, how finely what it
+// shows is made, and how much of it lies in the light.
 #include "luxel/display/fit_camera.h"
 
 #include <algorithm>
@@ -43,9 +43,10 @@ constexpr double kWide = 0.25;
 
 /// `liking` multiplies the score: a view from a little above reads better than a map.
 struct Candidate {
+  enum class From : uint8_t { outside, inside, street };
   scene::Camera camera;
   float liking = 1;
-  bool inside = false;
+  From from = From::outside;
 };
 
 /// What all candidates look at.
@@ -104,7 +105,7 @@ void add_outside(const Box3& box, float aspect, std::vector<Candidate>& out) {
       const Vec3 back = from_angles(float(i) * 45 * kDegree, height.elevation);
       const Mat34 axes = look_along({}, -back);
       const Vec3 eye = box.centre() + back * fitting_distance(box, axes, tan_y, aspect);
-      out.push_back({camera_at(look_along(eye, -back), kOutsideFov), height.liking, false});
+      out.push_back({camera_at(look_along(eye, -back), kOutsideFov), height.liking});
     }
 }
 
@@ -121,11 +122,13 @@ std::vector<PlaceInside> places_to_try(std::vector<PlaceInside> places) {
   return places;
 }
 
-void add_inside(std::span<const PlaceInside> places, std::vector<Candidate>& out) {
+/// `elevation` [radians] of the cameras.
+void add_inside(std::span<const PlaceInside> places, Candidate::From from, float elevation,
+                std::vector<Candidate>& out) {
   for (const PlaceInside& place : places)
     for (int i = 0; i < 8; ++i) {
-      const Vec3 ahead = from_angles(float(i) * 45 * kDegree, 0);
-      out.push_back({camera_at(look_along(place.eye, ahead), kInsideFov), 1.0f, true});
+      const Vec3 ahead = from_angles(float(i) * 45 * kDegree, elevation);
+      out.push_back({camera_at(look_along(place.eye, ahead), kInsideFov), 1.0f, from});
     }
 }
 
@@ -186,9 +189,9 @@ View look(const Stage& stage, const Candidate& candidate, LookFor what,
   const std::vector<uint8_t> lit =
       all ? lit_by_sources(scene, stage.tracer, stage.glimpse, rays, hits)
           : std::vector<uint8_t>(hits.size(), 1);
-  const std::vector<uint8_t> roofed = all && candidate.inside
-                                          ? under_a_roof(stage, rays, hits)
-                                          : std::vector<uint8_t>(hits.size(), 1);
+  const bool inside = candidate.from == Candidate::From::inside;
+  const std::vector<uint8_t> roofed =
+      all && inside ? under_a_roof(stage, rays, hits) : std::vector<uint8_t>(hits.size(), 1);
 
   View view;
   const float pixel = 4 * length(rays_of.right) * length(rays_of.up) / float(rows * columns);
@@ -224,10 +227,12 @@ View look(const Stage& stage, const Candidate& candidate, LookFor what,
   return view;
 }
 
-/// Full marks for a frame that is 40 to 95 % filled; inside a room it is filled by nature.
+/// Full marks for a frame that is 40 to 95 % filled; inside a room it is filled by nature, and
+/// above a street there is some sky.
 double coverage_marks(const Candidate& candidate, const View& view) {
   if (view.coverage < 0.4) return view.coverage / 0.4;
-  if (view.coverage > 0.95 && !candidate.inside) return 0.8;
+  if (candidate.from == Candidate::From::street) return 1 - 2 * std::max(0.0, view.coverage - 0.85);
+  if (view.coverage > 0.95 && candidate.from == Candidate::From::outside) return 0.8;
   return 1;
 }
 
@@ -254,9 +259,11 @@ double score_of(const Stage& stage, const Candidate& candidate, LookFor what,
                 std::vector<Seen>& scratch) {
   const View view = look(stage, candidate, what, scratch);
   // Inside, the finest thing of all is close to the eye soon: the room is what is to be seen.
-  const double detail = candidate.inside ? std::sqrt(view.detail) * view.width : view.detail;
+  const double detail = candidate.from == Candidate::From::outside
+                            ? view.detail
+                            : std::sqrt(view.detail) * view.width;
   // What is seen through windows is not what a picture of rooms is to show.
-  const double indoors = candidate.inside ? view.indoors : 1;
+  const double indoors = candidate.from == Candidate::From::inside ? view.indoors : 1;
   return detail * std::sqrt(view.area_m2) * coverage_marks(candidate, view) *
          light_marks(stage, view) * (1 - view.near) * indoors * double(candidate.liking);
 }
@@ -357,10 +364,15 @@ std::vector<Candidate> usual_candidates(const Stage& stage, const Box3& box) {
   const bool only_inside_is_lit =
       std::ranges::any_of(places, is_lit_room) && is_dark(stage, outside);
   if (!only_inside_is_lit) {
-    if (!consists_of_rooms(places)) return outside;
+    if (!consists_of_rooms(places)) {
+      const auto streets = places_in_streets(stage.scene, stage.tracer, stage.glimpse);
+      for (const float degrees : {0.0f, 5.0f})
+        add_inside(streets, Candidate::From::street, degrees * kDegree, inside);
+      return inside.empty() ? outside : inside;
+    }
     if (share_seen_from_outside(stage, places, outside) >= kDollsHouse) return outside;
   }
-  add_inside(places_to_try(std::move(places)), inside);
+  add_inside(places_to_try(std::move(places)), Candidate::From::inside, 0, inside);
   return inside;
 }
 
@@ -377,7 +389,8 @@ scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& trac
   std::vector<Candidate> candidates;
   if (from == Viewpoint::automatic) candidates = usual_candidates(stage, box);
   if (from == Viewpoint::interior)
-    add_inside(places_to_try(places_inside(scene, tracer, stage.glimpse)), candidates);
+    add_inside(places_to_try(places_inside(scene, tracer, stage.glimpse)), Candidate::From::inside,
+               0, candidates);
   if (candidates.empty()) add_outside(box, aspect, candidates);
   return best_of(stage, candidates);
 }

@@ -9,7 +9,8 @@
 namespace luxel::display {
 
 /// Where a camera looks from. `automatic`: from inside where the scene is a room, or a house of
-/// rooms, that has light inside and cannot be looked into from outside; else from outside.
+/// rooms, that has light inside and cannot be looked into from outside; a town from a street; all
+/// else from outside.
 enum class Viewpoint : uint8_t { automatic, interior, exterior, front, top };
 
 /// A camera that shows the scene well, in a picture of this aspect (width / height).

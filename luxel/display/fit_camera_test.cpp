@@ -109,23 +109,40 @@ TEST(FitCamera, LooksIntoADollsHouseFromOutside) {
   EXPECT_FALSE(from_inside(room));
 }
 
-// Twenty-five houses on a square, each a lit room: what there is to see is the town.
-TEST(FitCamera, LooksAtATownFromOutside) {
+/// Houses of 6 x 6 x 6 m on a square of 60 x 60 m, each a lit room.
+Scene town_of(std::span<const Vec3> places) {
   Scene town;
   const uint32_t m = gray(town, true);
   scene::Mesh mesh;
   scene::add_quad(mesh, {Vec3{-30, 0, 30}, {30, 0, 30}, {30, 0, -30}, {-30, 0, -30}}, m);
-  for (int i = -2; i <= 2; ++i)
-    for (int j = -2; j <= 2; ++j) {
-      const Vec3 at{12.0f * float(i), 0, 12.0f * float(j)};
-      scene::add_box(mesh, at - Vec3{3, 0, 3}, at + Vec3{3, 6, 3}, m);
-      scene::PunctualLight lamp;
-      lamp.position = at + Vec3{0, 3, 0};
-      town.lights.push_back(lamp);
-    }
+  for (const Vec3 at : places) {
+    scene::add_box(mesh, at - Vec3{3, 0, 3}, at + Vec3{3, 6, 3}, m);
+    scene::PunctualLight lamp;
+    lamp.position = at + Vec3{0, 3, 0};
+    town.lights.push_back(lamp);
+  }
   scene::place(town, std::move(mesh));
   add_day(town, {1, 1, 1});
-  EXPECT_FALSE(from_inside(town));
+  return town;
+}
+
+// There is light in each house, but the town is what there is to see, as its people see it.
+TEST(FitCamera, LooksAtATownFromAStreet) {
+  std::vector<Vec3> houses;
+  for (int i = -2; i <= 2; ++i)
+    for (int j = -2; j <= 2; ++j) houses.push_back({12.0f * float(i), 0, 12.0f * float(j)});
+  const Vec3 eye = column(fitted(town_of(houses), 1.5f).world_from_camera, 3);
+  EXPECT_GT(eye.y, 0.5f);
+  EXPECT_LT(eye.y, 1.7f);
+  EXPECT_LT(std::max(std::abs(eye.x), std::abs(eye.z)), 30);
+  for (const Vec3 at : houses)
+    EXPECT_GT(std::max(std::abs(eye.x - at.x), std::abs(eye.z - at.z)), 3.4f) << "near a wall";
+}
+
+// Three houses are things on a plate.
+TEST(FitCamera, LooksAtAFewHousesFromOutside) {
+  const std::vector<Vec3> houses{{-12, 0, 0}, {12, 0, 0}, {0, 0, 12}};
+  EXPECT_FALSE(from_inside(town_of(houses)));
 }
 
 TEST(FitCamera, DoesAsItIsTold) {

@@ -88,6 +88,88 @@ std::optional<PlaceInside> look_around(const scene::Scene& scene, const trace::R
   return place;
 }
 
+/// A scene from above: the heights of what rays from the sky meet, in kCells^2 cells over its box.
+constexpr int kCells = 64;
+struct Relief {
+  std::vector<float> height;   ///< -infinity where there is nothing
+  float ground = 0, tall = 0;  ///< heights of the ground, and of all but a tenth of what rises
+  Box3 box;
+
+  Vec3 middle_of(int cell) const {
+    const float x = (float(cell % kCells) + 0.5f) / kCells,
+                z = (float(cell / kCells) + 0.5f) / kCells;
+    return {box.lower.x + x * (box.upper.x - box.lower.x), height[size_t(cell)],
+            box.lower.z + z * (box.upper.z - box.lower.z)};
+  }
+  bool is_ground(int cell) const {
+    return std::abs(height[size_t(cell)] - ground) < 0.1f * (tall - ground);
+  }
+  bool is_built(int cell) const { return height[size_t(cell)] > ground + 0.4f * (tall - ground); }
+};
+
+float quantile(std::vector<float> values, double part) {
+  const auto at = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+/// `ground` and `tall` are equal where nothing rises.
+Relief relief_of(const scene::Scene& scene, const trace::RayTracer& tracer) {
+  Relief out;
+  out.box = world_bounds(scene);
+  out.height.assign(size_t(kCells * kCells), out.box.upper.y + out.box.diagonal());
+  std::vector<trace::Ray> rays;
+  for (int cell = 0; cell < kCells * kCells; ++cell)
+    rays.push_back({out.middle_of(cell), 0, {0, -1, 0}, INFINITY});
+  std::vector<trace::Hit> hits(rays.size());
+  tracer.closest_hits(rays, hits);
+  std::vector<float> found, rising;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    out.height[i] = hits[i].found() ? rays[i].origin.y - hits[i].t : -INFINITY;
+    if (hits[i].found()) found.push_back(out.height[i]);
+  }
+  if (found.empty()) return out;
+  out.ground = out.tall = quantile(found, 0.2);
+  const float highest = *std::ranges::max_element(found);
+  for (const float h : found)
+    if (h - out.ground > 0.1f * (highest - out.ground)) rising.push_back(h);
+  if (!rising.empty()) out.tall = quantile(std::move(rising), 0.9);
+  return out;
+}
+
+/// The number of buildings that stand apart.
+int count_buildings(const Relief& relief) {
+  constexpr int kLeastCells = 4;
+  std::vector<uint8_t> seen(relief.height.size());
+  int buildings = 0;
+  for (int first = 0; first < kCells * kCells; ++first) {
+    int cells = 0;
+    std::vector<int> to_visit{first};
+    while (!to_visit.empty()) {
+      const int cell = to_visit.back();
+      to_visit.pop_back();
+      if (seen[size_t(cell)] || !relief.is_built(cell)) continue;
+      seen[size_t(cell)] = 1, ++cells;
+      if (cell % kCells > 0) to_visit.push_back(cell - 1);
+      if (cell % kCells < kCells - 1) to_visit.push_back(cell + 1);
+      if (cell >= kCells) to_visit.push_back(cell - kCells);
+      if (cell < kCells * (kCells - 1)) to_visit.push_back(cell + kCells);
+    }
+    buildings += cells >= kLeastCells;
+  }
+  return buildings;
+}
+
+/// Open ground, and no wall within a cell.
+bool has_room_to_stand(const Relief& relief, int cell) {
+  const int x = cell % kCells, z = cell / kCells;
+  if (std::min(x, z) < 1 || std::max(x, z) > kCells - 2) return false;
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dx = -1; dx <= 1; ++dx)
+      if (!relief.is_ground(cell + dz * kCells + dx)) return false;
+  return true;
+}
+
 }  // namespace
 
 bool is_enclosed(const PlaceInside& place) {
@@ -117,6 +199,33 @@ std::vector<PlaceInside> places_inside(const scene::Scene& scene, const trace::R
       if (const auto place = look_around(scene, tracer, glimpse, box.diagonal(), *eye))
         out.push_back(*place);
     }
+  return out;
+}
+
+std::vector<PlaceInside> places_in_streets(const scene::Scene& scene,
+                                           const trace::RayTracer& tracer, const Glimpse& glimpse) {
+  constexpr int kFewBuildings = 4, kPlaces = 48;
+  // Of the box's cells. Houses cover more of a town than trees of a garden.
+  constexpr double kLeastGround = 0.15, kLeastBuilt = 0.15;
+  constexpr double kWalls = 0.58;  // the ground fills one half of all directions
+  const Relief relief = relief_of(scene, tracer);
+  int ground = 0, built = 0;
+  std::vector<int> standing;
+  for (int cell = 0; cell < kCells * kCells; ++cell) {
+    ground += relief.is_ground(cell), built += relief.is_built(cell);
+    if (has_room_to_stand(relief, cell)) standing.push_back(cell);
+  }
+  if (!(relief.tall > relief.ground) || ground < kLeastGround * kCells * kCells ||
+      built < kLeastBuilt * kCells * kCells || count_buildings(relief) < kFewBuildings)
+    return {};
+  std::vector<PlaceInside> out;
+  const size_t step = std::max(standing.size() / kPlaces, size_t(1));
+  for (size_t i = step / 2; i < standing.size(); i += step) {
+    Vec3 eye = relief.middle_of(standing[i]);
+    eye.y += std::min(kEyeLevel_m, 0.15f * (relief.tall - relief.ground));
+    const auto place = look_around(scene, tracer, glimpse, relief.box.diagonal(), eye);
+    if (place && place->around >= kWalls && place->above < kAbove) out.push_back(*place);
+  }
   return out;
 }
 

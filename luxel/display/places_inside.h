@@ -28,4 +28,10 @@ bool is_lit(const PlaceInside& place);
 std::vector<PlaceInside> places_inside(const scene::Scene& scene, const trace::RayTracer& tracer,
                                        const Glimpse& glimpse);
 
+/// Places between the buildings of a town, where a person could stand: at eye level above open
+/// ground, with walls in sight. None where the scene is no town: fewer than four buildings stand
+/// apart, or buildings or open ground cover less than 15 % of its bounds.
+std::vector<PlaceInside> places_in_streets(const scene::Scene& scene,
+                                           const trace::RayTracer& tracer, const Glimpse& glimpse);
+
 }  // namespace luxel::display

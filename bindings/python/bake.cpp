@@ -205,7 +205,11 @@ void add_bake(py::module_& module) {
           "scene", [](const PythonBake& self) { return self.bake.scene; },
           "The scene as it was baked, with its outside light; charts may have been cut. A copy.")
       .def_property_readonly(
-          "relative_error", [](const PythonBake& self) { return self.bake.light.relative_error; },
+          "relative_error",
+          [](const PythonBake& self) {
+            const pipeline::TexelLight& light = self.bake.light;
+            return light.delivered_error.value_or(light.relative_error);
+          },
           "Estimated root mean square error over the mean light.")
       .def_property_readonly(
           "warnings", [](const PythonBake& self) { return self.bake.warnings; },

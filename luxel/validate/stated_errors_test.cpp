@@ -4,10 +4,14 @@
 
 #include <cmath>
 
+#include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/solver/hierarchical.h"
+#include "luxel/pipeline/solver/matrix.h"
 #include "luxel/pipeline/solver/measured_error.h"
 #include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
 #include "luxel/validate/random_scenes.h"
+#include "luxel/viewfactor/point_form_factor.h"
 
 namespace luxel::validate {
 namespace {
@@ -192,6 +196,105 @@ TEST(StatedErrorsSlow, HierarchicalIsRightWhereThingsPassThroughEachOther) {
   EXPECT_LT(e.truth, 0.06);
   EXPECT_LE(e.truth, e.stated);
   EXPECT_LT(e.stated, 2 * e.truth);
+}
+
+/// Black slats under a lamp of 2 m x 2 m, over a black floor as large: all light is direct, and
+/// known in closed form.
+constexpr float kLampHeight = 3, kSlatHeight = 1.5f, kFirstSlat = -0.75f, kSlatStep = 0.3f,
+                kSlatWidth = 0.15f;
+constexpr int kSlats = 6;
+
+scene::Scene slats_under_a_lamp() {
+  scene::Scene s;
+  const uint32_t lamp = scene::add_material(s, "lamp", {}, {1, 1, 1}),
+                 black = scene::add_material(s, "black", {});
+  scene::add_rectangle(s, {-1, 1, -1, 1}, 0, true, black);
+  scene::add_rectangle(s, {-1, 1, -1, 1}, kLampHeight, false, lamp);
+  for (int k = 0; k < kSlats; ++k) {
+    const float x = kFirstSlat + kSlatStep * float(k);
+    scene::add_rectangle(s, {x, x + kSlatWidth, -2, 2}, kSlatHeight, true, black);
+  }
+  return s;
+}
+
+/// E at a point that faces up: of the strips of the lamp that no slat hides from it. Slats are so
+/// long that none of their ends is seen in front of the lamp.
+double light_between_slats(Vec3 p) {
+  const auto strip = [&](double x0, double x1) {
+    if (x0 >= x1) return 0.0;
+    const double y = double(kLampHeight);
+    const DVec3 corners[] = {{x0, y, -1}, {x1, y, -1}, {x1, y, 1}, {x0, y, 1}};
+    return viewfactor::point_to_polygon(DVec3{double(p.x), double(p.y), double(p.z)},
+                                        DVec3{0, 1, 0}, corners);
+  };
+  if (p.y > 0.9f * kSlatHeight) return kPiDouble * strip(-1, 1);
+  const double scale = double((kLampHeight - p.y) / (kSlatHeight - p.y));
+  double sum = 0, begin = -1;
+  for (int k = 0; k < kSlats; ++k) {
+    const double from = double(p.x) + scale * double(kFirstSlat + kSlatStep * float(k) - p.x);
+    sum += strip(begin, std::min(from, 1.0));
+    begin = std::max(begin, from + scale * double(kSlatWidth));
+  }
+  return kPiDouble * (sum + strip(begin, 1));
+}
+
+// Where nothing reflects light the form factors' rays tell nothing of its error: it is the noise of
+// shadow rays.
+TEST(StatedErrors, MatrixStatesTheNoiseOfDirectLight) {
+  Progress progress;
+  const auto p = prepare(slats_under_a_lamp(), 64, progress);
+  ASSERT_TRUE(p);
+  pipeline::BakeSettings settings;
+  settings.direct_samples = 16;
+  auto& own = settings.own.of<matrix::MatrixParams>();
+  own.patches.count = 64, own.factors.rays_per_patch = 64;
+  const auto solved = solve(**p, "matrix", settings, progress);
+  ASSERT_TRUE(solved);
+  const transport::Elements& at = (*p)->elements;
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < at.size(); ++i) {
+    const bool is_up = at.geometric_normal[i].y > 0 && at.position[i].y < 2;
+    const double exact = is_up ? light_between_slats(at.position[i]) : 0;
+    sum += exact;
+    squares += std::pow(double(luminance(solved->light.irradiance[i])) - exact, 2);
+  }
+  const double truth = std::sqrt(squares * double(at.size())) / sum;
+  EXPECT_GT(truth, 0.01);
+  EXPECT_GE(solved->light.relative_error, truth);
+  EXPECT_LT(solved->light.relative_error, 2 * truth);
+}
+
+// Two long bakes know the light some times better than the denoiser leaves that of few rays.
+TEST(StatedErrors, OfWhatTheDenoiserLeaves) {
+  Progress progress;
+  const auto p = prepare(scene::cornell_box(), 48, progress);
+  ASSERT_TRUE(p);
+  pipeline::BakeSettings settings;
+  settings.samples = 1024, settings.direct_samples = 256, settings.supersample = 1;
+  Judged judged;
+  for (std::vector<Rgb>* answer : {&judged.first, &judged.second}) {
+    ++settings.seed;
+    const auto known = solve(**p, "gather", settings, progress);
+    ASSERT_TRUE(known);
+    *answer = known->light.irradiance, judged.hidden = known->light.hidden;
+  }
+  judged.standard_error.resize(judged.first.size());
+  settings.samples = 32, settings.direct_samples = 8, settings.denoise = true;
+  std::vector<double> stated;
+  for (settings.seed = 10; settings.seed < 12; ++settings.seed) {
+    auto solved = solve(**p, "gather", settings, progress);
+    ASSERT_TRUE(solved);
+    const double raw = stated_error(solved->light, judged).truth;
+    ASSERT_TRUE(pipeline::denoise_light((*p)->input(), settings, {}, solved->light, progress));
+    const double truth = stated_error(solved->light, judged).truth;
+    EXPECT_LT(truth, 0.7 * raw);
+    ASSERT_TRUE(solved->light.delivered_error);
+    stated.push_back(*solved->light.delivered_error);
+    EXPECT_GT(stated.back(), truth / kEstimateFactor);
+    EXPECT_LT(stated.back(), truth * kEstimateFactor);
+                stated.back(), truth);
+  }
+  EXPECT_NEAR(stated[0], stated[1], 0.2 * stated[0]);
 }
 
 }  // namespace

@@ -116,10 +116,11 @@ nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
       {"peak_memory_bytes", peak_resident_bytes()},
       {"scratch_bytes", bake.light.scratch_bytes},
       {"device", bake.light.device.empty() ? "cpu" : bake.light.device},
-      {"relative_error", bake.light.relative_error},
+      {"relative_error", bake.light.delivered_error.value_or(bake.light.relative_error)},
       {"preview", to_json(bake.view)},
       {"default_day", is_lit_by_default_day(settings.outside, bake.scene)},
       {"warnings", bake.warnings}};
+  if (settings.denoise) out["relative_error_before_denoising"] = bake.light.relative_error;
   if (!bake.light.errors.empty()) out["error"] = about_error(settings, bake);
   return out;
 }

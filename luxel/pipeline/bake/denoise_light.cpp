@@ -1,6 +1,8 @@
 #include "luxel/pipeline/bake/denoise_light.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
@@ -41,6 +43,16 @@ Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
   return out;
 }
 
+/// What light errs by, as its answers tell; nothing where it has none, or no light.
+std::optional<double> error_by_answers(const TexelLight& light) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < light.irradiance.size(); ++i)
+    if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
+  if (light.answers.elements.empty() || !(sum > 0)) return std::nullopt;
+  const double square = light::square_error(light.answers, light.irradiance).mean;
+  return std::hypot(std::sqrt(std::max(0.0, square)) * count / sum, light.relative_unseen);
+}
+
 }  // namespace
 
 Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
@@ -68,6 +80,7 @@ Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
   LUXEL_TRY_STATUS(post::denoise(places, parts, params, progress, team));
   for (size_t i = 0; i < light.direct.size(); ++i) rest[i] += light.direct[i];
   light.irradiance = std::move(rest);
+  light.delivered_error = error_by_answers(light);
   return {};
 }
 

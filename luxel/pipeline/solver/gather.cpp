@@ -133,6 +133,7 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.more_points = !rounds && !settings.supersample;
   params.bounces = settings.bounces;
   params.tells_direct = settings.light != LightPart::all;
+  params.tells_answers = settings.denoise && settings.light == LightPart::all && params.bounces < 0;
   params.seed = settings.seed;
   return params;
 }
@@ -152,6 +153,7 @@ TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
   out.direct = std::move(result.direct);
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);
+  out.relative_unseen = result.relative_texels, out.answers = std::move(result.answers);
   out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
   out.scratch_bytes = result.hit_bytes_in_file, out.rays_kept = result.rays_kept;
   return out;

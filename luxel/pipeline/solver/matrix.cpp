@@ -53,13 +53,13 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   LUXEL_TRY(const matrix::Transfer map,
             matrix::make_transfer(prepared.patched, in.tracer,
                                   {in.elements.position, in.elements.geometric_normal}, progress));
-  light::DirectParams direct_params{first_direct_samples(settings), settings.seed};
-  direct_params.team = stores.team;
+  light::SupersampleParams of_direct{.points = first_supersample(settings),
+                                     .direct = {first_direct_samples(settings), settings.seed}};
+  of_direct.direct.team = stores.team;
   LUXEL_TRY(light::DirectLight direct, light::direct_light(in.scene, in.elements, in.lights,
-                                                           in.tracer, direct_params, progress));
+                                                           in.tracer, of_direct.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(in, {.points = first_supersample(settings), .direct = direct_params},
-                               direct, progress));
+            light::supersample(in, of_direct, direct, progress));
   TexelLight out;
   out.irradiance.resize(in.elements.size());
   matrix::transfer(map, solution.indirect, out.irradiance);
@@ -67,12 +67,11 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   const auto radiosity = [&](const trace::Hit& hit) {
     return patch_radiosity(in, prepared.patched, solution, hit);
   };
-  LUXEL_TRY(const double error,
-            light::point_error({in.scene, in.tracer, in.lights.around, radiosity, settings.seed},
-                               in.elements, out.irradiance, out.hidden, progress));
   parallel_for(in.elements.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) out.irradiance[i] += direct.irradiance[i];
   });
+  LUXEL_TRY(out.answers, light::point_answers({in, radiosity, direct.variance, of_direct},
+                                              out.hidden, progress));
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   // What patches exchange has no grain: every texel reads it through the same smooth functions.
   out.variance.assign(in.elements.size(), 0.0f);
@@ -82,7 +81,9 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   out.rays = solution.rays + direct.rays + averaged.rays, out.sweeps = solution.sweeps;
   out.elements = prepared.patched.patches.size();
   const double mean = mean_light(out);
+  const double error = light::point_error(out.answers, out.irradiance);
   out.relative_error = std::hypot(solution.relative_error, mean > 0 ? error / mean : 0);
+  out.relative_unseen = solution.relative_error;
   return out;
 }
 

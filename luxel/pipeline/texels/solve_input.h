@@ -10,6 +10,7 @@
 #include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/part_store.h"
 #include "luxel/base/team.h"
+#include "luxel/light/chosen_elements.h"
 #include "luxel/light/light_estimate.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/texel_scene.h"
@@ -90,7 +91,13 @@ struct TexelLight {
   uint64_t rays_kept = 0;            ///< that an earlier bake had traced
   uint64_t supersampled_texels = 0;  ///< direct light is a mean over their points
   int sweeps = 0;
-  double relative_error = 0;       ///< estimated, root mean square over the mean
+  double relative_error = 0;  ///< estimated, root mean square over the mean
+  /// Where the solver gives some, the light of some texels anew, and the part of relative_error
+  /// that answers have as well, so that they do not show it.
+  light::Answers answers;
+  double relative_unseen = 0;
+  /// With answers: relative_error of the light that the denoiser has left.
+  std::optional<double> delivered_error;
   std::vector<uint8_t> hidden;     ///< per texel: 1 inside a solid, where E means nothing
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files, mapped ones too

@@ -139,6 +139,9 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
   out.hit_bytes_in_file = light.hits.bytes_in_file();
   light.hits.rounds.clear();
   light.hits.device = nullptr;
+  if (in.params.tells_answers) {
+    LUXEL_TRY(out.answers, answers_of(in, light, progress));
+  }
   LUXEL_TRY_STATUS(judge(in, light, progress));
   drop_light(light.hits);
   show(in.observer, light, true);
@@ -166,6 +169,7 @@ std::vector<uint16_t> rays_of(const TracedHits& hits) {
 void take_result(Progressive&& light, Gather& out) {
   out.relative_error = light.errors.expected.rms();
   out.relative_noise = std::sqrt(light.errors.expected.noise);
+  out.relative_texels = std::sqrt(light.errors.expected.texels);
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);
@@ -187,6 +191,7 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
                       const GatherParams& params, const GatherStores& stores,
                       const GatherObserver& observer, Progress& progress) {
   LUXEL_CHECK(!params.tells_direct || layers == nullptr);
+  LUXEL_CHECK(!params.tells_answers || params.bounces < 0);
   LUXEL_CHECK(!stores.team || !(stores.device || stores.keep || stores.earlier ||
                                 (stores.parts && stores.parts->shares()) || observer.on_estimate));
   const auto start = Clock::now();

@@ -12,6 +12,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/base/team.h"
+#include "luxel/light/chosen_elements.h"
 #include "luxel/light/light_estimate.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/supersample.h"
@@ -44,9 +45,10 @@ struct GatherParams {
   /// Without rounds: once rays are traced, so many shadow rays, or points, more that direct light
   /// is known as well as the rest, where that costs at most twice what the rays did.
   bool more_shadow_rays = false, more_points = false;
-  int bounces = -1;           ///< < 0: all
-  float tolerance = 1e-4f;    ///< see BounceParams
-  bool tells_direct = false;  ///< Gather::sources; not with layers
+  int bounces = -1;            ///< < 0: all
+  float tolerance = 1e-4f;     ///< see BounceParams
+  bool tells_direct = false;   ///< Gather::sources; not with layers
+  bool tells_answers = false;  ///< Gather::answers; with all bounces
   uint64_t seed = 1;
 };
 
@@ -123,7 +125,11 @@ struct Gather {
   /// Root mean square error to expect over the mean luminance, of elements that no solid hides: of
   /// the noise (pooled_variances) and of what texels cost (texel_error).
   double relative_error = 0;
-  double relative_noise = 0;  ///< of its noise alone
+  double relative_noise = 0;   ///< of its noise alone
+  double relative_texels = 0;  ///< of what texels cost alone
+  /// With tells_answers: the light of some elements anew, by which a caller can judge what it makes
+  /// of `irradiance`. What texels cost is the same in them.
+  light::Answers answers;
 };
 
 /// While samples are still to come the bounces need not be exact: a hundredth is far below the

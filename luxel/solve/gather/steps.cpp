@@ -158,18 +158,24 @@ Status judge(const Request& in, Progressive& light, Progress& progress) {
 
 namespace {
 
+/// Light to light anew. `noise`: what is believed of its luminance's variance.
+LightToRepeat to_repeat(const Request& in, const Progressive& light, std::span<const float> noise) {
+  return {light.direct, light.levels, light.hits, in.behind, light.bounced.irradiance, noise};
+}
+RepeatParams repeat_params(const Request& in, const Progressive& light) {
+  return {in.supersample_params(), in.params.bounces < 0, spare_bytes(in.stores, light.hits),
+          in.stores.scratch_folder};
+}
+
 /// Where the root mean square error is asked for, its noise is measured. Errors: cancelled, disk
 /// full.
 Status measure_noise(const Request& in, Progressive& light, Progress& progress) {
   if (in.params.max_error <= 0 || in.params.error_measure != ErrorMeasure::rms) return {};
   Progress own;  // its stages are not those of the bake
-  LUXEL_TRY(const TrueNoise noise,
-            noise_by_repeating(in.scene, in.sides,
-                               {light.direct, light.levels, light.hits, in.behind,
-                                light.bounced.irradiance, light.errors.noise_variance},
-                               {in.supersample_params(), in.params.bounces < 0,
-                                spare_bytes(in.stores, light.hits), in.stores.scratch_folder},
-                               own));
+  LUXEL_TRY(
+      const TrueNoise noise,
+      noise_by_repeating(in.scene, in.sides, to_repeat(in, light, light.errors.noise_variance),
+                         repeat_params(in, light), own));
   light.share_of_direct = noise.share_of_direct;
   light.errors.expected.noise *=
       noise.over_believed / std::exchange(light.of_noise, noise.over_believed);
@@ -177,6 +183,18 @@ Status measure_noise(const Request& in, Progressive& light, Progress& progress) 
 }
 
 }  // namespace
+
+Result<light::Answers> answers_of(const Request& in, const Progressive& light, Progress& progress) {
+  progress.begin("check", 0);
+  std::vector<float> noise = light.direct.variance;
+  for (size_t i = 0; i < noise.size(); ++i) noise[i] += light.bounced.variance[i];
+  Progress own;  // its stages are those of the check
+  LUXEL_TRY(light::Answers out,
+            answers_by_repeating(in.scene, in.sides, to_repeat(in, light, noise),
+                                 repeat_params(in, light), own));
+  LUXEL_TRY_STATUS(stopped(progress));
+  return out;
+}
 
 Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));

@@ -1,7 +1,6 @@
 #include "luxel/solve/gather/budget/repeat_check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "luxel/base/random.h"
@@ -15,60 +14,16 @@ namespace {
 /// One element in so many is chosen, within bounds: the first for a ratio that is good enough, the
 /// other since more would tell little.
 constexpr size_t kElementsPerChosen = 32, kFewestChosen = 512, kMostChosen = 2048;
+/// Answers have so many times the rays of the light that they judge, and so many at least, at most:
+/// then their noise is below that of light which the denoiser has made a few times less noisy.
+constexpr int kAnswerTimes = 4, kFewestAnswerRays = 1024, kMostAnswerRays = 16384;
+/// And so many times its shadow rays, for its penumbrae are a few texels.
+constexpr int kAnswerShadowTimes = 16;
+/// Answers' rays are this part of the light's at most, but for the fewest elements.
+constexpr double kAnswerPart = 1.0 / 50;
+constexpr size_t kFewestAnswers = 128, kMostAnswers = 512;
 /// Any number: it sets these random numbers apart from those of the light.
-constexpr uint64_t kRepeatSeed = 0x4e9ea7;
-
-/// How likely each element is chosen, times the number of those that are. Half of it is as its
-/// variance is due, which tells most where that is right; the other half is the same for all, for
-/// what rays have missed nobody believes.
-struct Chances {
-  double all = 0, count = 0;  ///< the sum of variances, and the number of elements; of visible ones
-
-  double of(float variance) const { return 0.5 * double(variance) / all + 0.5 / count; }
-};
-Chances chances_of(std::span<const float> variance, const TracedHits& hits) {
-  Chances out;
-  for (size_t i = 0; i < variance.size(); ++i)
-    if (!is_hidden(hits, i)) out.all += double(variance[i]), out.count += 1;
-  return out;
-}
-
-/// Elements by equal steps along the sum of all chances (systematic sampling); ascending.
-std::vector<uint32_t> choose_elements(std::span<const float> variance, const TracedHits& hits,
-                                      const Chances& chances, uint64_t seed) {
-  std::vector<uint32_t> out;
-  if (!(chances.all > 0)) return out;
-  const size_t count = std::clamp(variance.size() / kElementsPerChosen, kFewestChosen, kMostChosen);
-  double sum = 0;
-  const double first = double(unit_float(uint32_t(hash64(seed, kRepeatSeed))));
-  for (uint32_t i = 0; i < variance.size(); ++i) {
-    if (is_hidden(hits, i)) continue;
-    sum += chances.of(variance[i]) * double(count);
-    while (out.size() < count && double(out.size()) + first < sum) out.push_back(i);
-  }
-  return out;
-}
-
-/// Elements of their own, with no repeats.
-struct Chosen {
-  std::vector<uint32_t> elements;
-  atlas::TexelMap map;
-  transport::Elements places;
-};
-Chosen chosen_of(const light::TexelScene& in, std::span<const uint32_t> drawn) {
-  Chosen out;
-  std::ranges::unique_copy(drawn, std::back_inserter(out.elements));
-  out.map.resolution = in.map.resolution;
-  out.map.texel_at.assign(in.map.texel_at.size(), atlas::kNone);
-  for (const uint32_t i : out.elements) {
-    const atlas::Texel& texel = in.map.texels[i];
-    out.map.texel_at[size_t(texel.y) * size_t(in.map.resolution) + size_t(texel.x)] =
-        uint32_t(out.map.texels.size());
-    out.map.texels.push_back(texel);
-  }
-  out.places = transport::elements_from_texels(in.scene, in.atlas, out.map);
-  return out;
-}
+constexpr uint64_t kRepeatSeed = 0x4e9ea7, kAnswerSeed = 0xa45e4;
 
 /// Their direct light, each as fine as it was. Errors: cancelled.
 Result<light::DirectLight> direct_again(const light::TexelScene& of_chosen,
@@ -134,6 +89,23 @@ struct LightAgain {
   std::vector<Rgb> direct, irradiance;  ///< E per chosen element [W/m^2]
 };
 
+/// E of the chosen elements by so many rays each, which no one has traced before, given their
+/// direct light. Errors: cancelled, disk full.
+Result<std::vector<Rgb>> gather_again(const Repeated& in, std::span<const Rgb> direct,
+                                      std::span<const uint16_t> samples, uint64_t seed,
+                                      Progress& progress) {
+  TracedHits hits = no_hits(samples.size());
+  follow_same_guide(in.light.hits, in.elements, hits);
+  LUXEL_TRY_STATUS(trace_more(trace_scene(in.of_chosen, &in.sides), samples,
+                              {.seed = seed,
+                               .memory_limit_bytes = in.params.memory_limit_bytes,
+                               .scratch_folder = in.params.scratch_folder,
+                               .follows_near = in.params.follows_near,
+                               .team = in.params.direct.direct.team},
+                              hits, progress));
+  return gather_from(in.sent, hits, direct, {}, progress);
+}
+
 /// E of the chosen elements with other random numbers: direct light as fine as it was, and as many
 /// rays each. Errors: cancelled, disk full.
 Result<LightAgain> light_again(const Repeated& in, Progress& progress) {
@@ -144,16 +116,8 @@ Result<LightAgain> light_again(const Repeated& in, Progress& progress) {
             direct_again(in.of_chosen, in.light.levels, in.elements, direct, progress));
   std::vector<uint16_t> samples;
   for (const uint32_t i : in.elements) samples.push_back(in.light.hits.samples[i]);
-  TracedHits hits = no_hits(samples.size());
-  follow_same_guide(in.light.hits, in.elements, hits);
-  LUXEL_TRY_STATUS(trace_more(trace_scene(in.of_chosen, &in.sides), samples,
-                              {.seed = direct.direct.seed,
-                               .memory_limit_bytes = in.params.memory_limit_bytes,
-                               .scratch_folder = in.params.scratch_folder,
-                               .follows_near = in.params.follows_near,
-                               .team = direct.direct.team},
-                              hits, progress));
-  LUXEL_TRY(std::vector<Rgb> e, gather_from(in.sent, hits, again.irradiance, {}, progress));
+  LUXEL_TRY(std::vector<Rgb> e,
+            gather_again(in, again.irradiance, samples, direct.direct.seed, progress));
   return LightAgain{std::move(again.irradiance), std::move(e)};
 }
 
@@ -163,11 +127,14 @@ Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transpor
                                      const LightToRepeat& light, const RepeatParams& params,
                                      Progress& progress) {
   // 1. Elements, some of them more than once.
-  const Chances chances = chances_of(light.noise_variance, light.hits);
-  const std::vector<uint32_t> drawn =
-      choose_elements(light.noise_variance, light.hits, chances, params.direct.direct.seed);
-  if (drawn.empty()) return TrueNoise{};
-  const Chosen chosen = chosen_of(in, drawn);
+  const auto hidden = [&](size_t i) { return is_hidden(light.hits, i); };
+  const light::Chances chances = light::chances_of(light.noise_variance, hidden);
+  if (!(chances.all > 0)) return TrueNoise{};
+  const size_t count =
+      std::clamp(light.hits.size() / kElementsPerChosen, kFewestChosen, kMostChosen);
+  const std::vector<uint32_t> drawn = light::choose_elements(light.noise_variance, hidden, chances,
+                                                             count, params.direct.direct.seed);
+  const light::Chosen chosen = light::chosen_of(in, drawn);
   // 2. Their light as it is, and anew. Both gather from one map.
   RadiosityMap sent = empty_radiosity_map(in.map.resolution);
   fill_radiosity(sent, in.map, in.elements, light.hits, light.behind, light.irradiance);
@@ -175,8 +142,7 @@ Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transpor
   for (const uint32_t i : chosen.elements) is_chosen[i] = 1;
   LUXEL_TRY(const std::vector<Rgb> known,
             gather_from(sent, light.hits, light.direct.irradiance, is_chosen, progress));
-  const light::TexelScene of_chosen{in.scene,  in.atlas,  chosen.map,     chosen.places,
-                                    in.lights, in.tracer, in.light_device};
+  const light::TexelScene of_chosen = light::scene_of(in, chosen);
   const Repeated repeated{of_chosen, sides, light, params, chosen.elements, sent};
   LUXEL_TRY(const LightAgain again, light_again(repeated, progress));
   // 3. The sums of all variances, as those say that were chosen.
@@ -192,6 +158,43 @@ Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transpor
   }
   return TrueNoise{.over_believed = sum / double(drawn.size()) / chances.all,
                    .share_of_direct = of_both > 0 ? of_direct / of_both : 0};
+}
+
+Result<light::Answers> answers_by_repeating(const light::TexelScene& in,
+                                            const transport::OwnSides& sides,
+                                            const LightToRepeat& light, const RepeatParams& params,
+                                            Progress& progress) {
+  const auto hidden = [&](size_t i) { return is_hidden(light.hits, i); };
+  const auto rays_of_answer = [&](size_t i) {
+    return uint16_t(
+        std::clamp(kAnswerTimes * int(light.hits.samples[i]), kFewestAnswerRays, kMostAnswerRays));
+  };
+  const light::Chances chances = light::chances_of(light.noise_variance, hidden);
+  if (chances.count == 0) return light::Answers{};
+  double rays = 0, rays_of_answers = 0;  // of all elements
+  for (size_t i = 0; i < light.hits.size(); ++i)
+    if (!hidden(i)) rays += light.hits.samples[i], rays_of_answers += 2 * rays_of_answer(i);
+  const double part = kAnswerPart * rays / rays_of_answers;
+  const size_t count = std::clamp(size_t(part * chances.count), kFewestAnswers, kMostAnswers);
+  const std::vector<uint32_t> drawn = light::choose_elements(light.noise_variance, hidden, chances,
+                                                             count, params.direct.direct.seed);
+  light::Answers out = light::answers_for(drawn, light.noise_variance, chances);
+  const light::Chosen chosen = light::chosen_of(in, drawn);
+  RadiosityMap sent = empty_radiosity_map(in.map.resolution);
+  fill_radiosity(sent, in.map, in.elements, light.hits, light.behind, light.irradiance);
+  const light::TexelScene of_chosen = light::scene_of(in, chosen);
+  const Repeated repeated{of_chosen, sides, light, params, chosen.elements, sent};
+  std::vector<uint16_t> samples;
+  for (const uint32_t i : chosen.elements) samples.push_back(rays_of_answer(i));
+  light::SupersampleParams again = params.direct;
+  again.direct.samples *= kAnswerShadowTimes;
+  again.direct.parts = nullptr, again.direct.layers = nullptr;
+  for (std::vector<Rgb>* answer : {&out.first, &out.second}) {
+    again.direct.seed = hash64(params.direct.direct.seed, kAnswerSeed + (answer == &out.second));
+    LUXEL_TRY(const std::vector<Rgb> direct, light::direct_anew(of_chosen, again, progress));
+    LUXEL_TRY(*answer, gather_again(repeated, direct, samples, again.direct.seed, progress));
+  }
+  return out;
 }
 
 }  // namespace luxel::gather

@@ -7,13 +7,25 @@
 namespace luxel::cli {
 namespace {
 
-/// How far the light is off, as far as the solver knows, and where most.
+/// How far the light is off, as far as it is known: over the mean light, or where the most of it
+/// lies on few texels over that of those, since a mean with the dark rest says nothing.
 std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
+  constexpr double kMostlyLit = 0.5;
   const double rms = json["relative_error"].get<double>();
   if (rms <= 0) return {};
-  const std::string text = fmt::format("estimated error{}: RMS {:.3g} % of the mean light",
-                                       settings.denoise ? " before denoising" : "", 100 * rms);
-  if (!json.contains("error")) return text;
+  const double lit = json["lit_share"].get<double>();
+  const char* const of_what = json.contains("relative_error_before_denoising")
+                                  ? "of the finished lightmap"
+                              : settings.denoise ? "before denoising"
+                                                 : "estimated";
+  const std::string text =
+      lit >= kMostlyLit
+          ? fmt::format("error: {:.2g} % of the mean light (RMS, {})", 100 * rms, of_what)
+          : fmt::format(
+                "error: {:.2g} % of the light where there is any ({:.2g} % of the texels; "
+                "RMS, {})",
+                100 * json["relative_error_of_lit"].get<double>(), 100 * lit, of_what);
+  if (settings.max_error <= 0 || !json.contains("error")) return text;
   const auto& error = json["error"];
   const auto& worst = error["worst"];
   const auto at = worst["position"].get<std::array<double, 3>>();

@@ -1,6 +1,8 @@
 #include "luxel/pipeline/bake/bake_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -75,9 +77,27 @@ nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
 
 }  // namespace
 
+double lit_share(const TexelLight& light) {
+  std::vector<float> brightest;
+  double all = 0;
+  for (size_t i = 0; i < light.irradiance.size(); ++i) {
+    if (!light.hidden.empty() && light.hidden[i]) continue;
+    brightest.push_back(std::max(luminance(light.irradiance[i]), 0.0f));
+    all += double(brightest.back());
+  }
+  if (!(all > 0)) return 1;
+  std::ranges::sort(brightest, std::greater());
+  double sum = 0;
+  size_t count = 0;
+  while (count < brightest.size() && sum < kLitPart * all) sum += double(brightest[count++]);
+  return double(count) / double(brightest.size());
+}
+
 nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
                            const Progress& progress) {
   const nlohmann::json seconds = stage_seconds(progress.stages());
+  const double error = bake.light.delivered_error.value_or(bake.light.relative_error);
+  const double lit = lit_share(bake.light);
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("supersample", 0.0) +
                          seconds.value("trace rays", 0.0) + seconds.value("trace paths", 0.0) +
                          seconds.value("hemicubes", 0.0) + seconds.value("directions", 0.0) +
@@ -116,11 +136,14 @@ nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
       {"peak_memory_bytes", peak_resident_bytes()},
       {"scratch_bytes", bake.light.scratch_bytes},
       {"device", bake.light.device.empty() ? "cpu" : bake.light.device},
-      {"relative_error", bake.light.delivered_error.value_or(bake.light.relative_error)},
+      {"relative_error", error},
+      {"lit_share", lit},
+      {"relative_error_of_lit", error * std::sqrt(lit) / kLitPart},
       {"preview", to_json(bake.view)},
       {"default_day", is_lit_by_default_day(settings.outside, bake.scene)},
       {"warnings", bake.warnings}};
-  if (settings.denoise) out["relative_error_before_denoising"] = bake.light.relative_error;
+  if (bake.light.delivered_error)
+    out["relative_error_before_denoising"] = bake.light.relative_error;
   if (!bake.light.errors.empty()) out["error"] = about_error(settings, bake);
   return out;
 }

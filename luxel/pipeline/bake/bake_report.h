@@ -12,4 +12,9 @@ namespace luxel::pipeline {
 nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
                            const Progress& progress);
 
+/// The least part of the texels that holds 99 % of the light of all, hidden ones aside; 1 where
+/// there is none.
+inline constexpr double kLitPart = 0.99;
+double lit_share(const TexelLight& light);
+
 }  // namespace luxel::pipeline

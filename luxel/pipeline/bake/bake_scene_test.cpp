@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "luxel/pipeline/bake/bake_report.h"
 #include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/pipeline/solver/hierarchical.h"
 #include "luxel/pipeline/solver/matrix.h"
@@ -15,6 +16,20 @@ BakeSettings small() {
   BakeSettings settings;
   settings.resolution = 32, settings.samples = 64;
   return settings;
+}
+
+// A pool of light on a black plain: one texel of 100, and next to nothing on the others. Hidden
+// texels are none.
+TEST(LitShare, IsThatOfTheTexelsWithNearlyAllLight) {
+  TexelLight light;
+  light.irradiance.assign(101, Rgb{1e-5f, 1e-5f, 1e-5f});
+  light.hidden.assign(101, 0);
+  light.irradiance[40] = {1, 1, 1}, light.irradiance[50] = {9, 9, 9}, light.hidden[50] = 1;
+  EXPECT_EQ(lit_share(light), 0.01);
+  light.irradiance.assign(101, Rgb{1, 1, 1});
+  EXPECT_EQ(lit_share(light), 0.99);
+  light.irradiance.assign(101, Rgb{});
+  EXPECT_EQ(lit_share(light), 1);
 }
 
 // A closed box whose walls radiate L and reflect rho: everywhere E = pi L / (1 - rho).

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "luxel/base/warp.h"
+#include "luxel/scene/both_off_surface.h"
 #include "luxel/scene/off_surface.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/trace/camera_rays.h"
@@ -29,7 +30,9 @@ trace::Ray towards(const Glimpse::Source& source, Vec3 from) {
   if (source.is_direction) return {from, 0, source.at, INFINITY};
   const Vec3 way = source.at - from;
   const bool behind = dot(source.normal, source.normal) > 0 && dot(source.normal, way) >= 0;
-  return {from, 0, behind ? Vec3{} : way, 0.999f};
+  const float distance = length(way);
+  return {from, 0, behind ? Vec3{} : way / distance,
+          both::reach_of_shadow_ray(distance, source.at)};
 }
 
 std::vector<scene::SurfacePoint> points_on_emitters(const scene::Scene& scene) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/scene/light_kinds.h"
 #include "luxel/scene/off_surface.h"
 #include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
 #include "tests/reference_data.h"
 
 namespace luxel::light {
@@ -75,6 +77,48 @@ TEST(DirectLight, APointLightFallsWithTheSquareOfTheDistance) {
   EXPECT_NEAR(direct_at(scene, {0, 0, 0}, {0, 1, 0}, 1).y, 2.0f, 1e-5f);
   EXPECT_NEAR(direct_at(scene, {2, 0, 0}, {0, 1, 0}, 1).x, 4 / 8.0f * std::sqrt(0.5f), 1e-6f);
   EXPECT_EQ(direct_at(scene, {0, 0, 0}, {0, -1, 0}, 1), (Rgb{0, 0, 0}));
+}
+
+/// A floor under a lamp of 900 in or beside a ceiling at 3 m.
+enum class Ceiling { faces_down, faces_up, slab };
+scene::Scene under_a_ceiling(Ceiling kind, float height_m, bool is_spot) {
+  scene::PunctualLight lamp;
+  lamp.position = {0, height_m, 0}, lamp.intensity = {900, 900, 900};
+  if (is_spot) lamp.kind = scene::LightKind::spot;
+  lamp.inner_cone_rad = 0.7f, lamp.outer_cone_rad = 0.8f;
+  scene::Scene scene = one_quad_scene(lamp);
+  if (kind != Ceiling::slab) {
+    scene::add_rectangle(scene, {-5, 5, -5, 5}, 3, kind == Ceiling::faces_up, 0);
+    return scene;
+  }
+  scene::Mesh slab;
+  scene::add_box(slab, {-5, 3, -5}, {5, 3.02f, 5}, 0);
+  scene::place(scene, std::move(slab));
+  return scene;
+}
+
+// E = I h / (h^2 + x^2)^(3/2), as if there were no ceiling.
+TEST(DirectLight, ALampInASurfaceLightsWhatLiesBeforeIt) {
+  for (const Ceiling kind : {Ceiling::faces_down, Ceiling::faces_up, Ceiling::slab})
+    for (const float above : {0.0f, -1e-6f, 1e-6f, -1e-5f, 1e-5f, 1e-4f})
+      for (const bool is_spot : {false, true})
+        for (const double x : {0.0, 2.0}) {
+          const double h = 3 + double(above), want = 900 * h / std::pow(h * h + x * x, 1.5);
+          const scene::Scene scene = under_a_ceiling(kind, 3 + above, is_spot);
+          EXPECT_NEAR(double(direct_at(scene, {float(x), 0, 0}, {0, 1, 0}, 1).x), want, 1e-4 * want)
+              << int(kind) << " " << above << " " << is_spot << " " << x;
+        }
+}
+
+TEST(DirectLight, ALampBehindASurfaceIsHidden) {
+  for (const Ceiling kind : {Ceiling::faces_down, Ceiling::faces_up, Ceiling::slab})
+    EXPECT_EQ(direct_at(under_a_ceiling(kind, 3.005f, false), {0, 0, 0}, {0, 1, 0}, 1), Rgb{});
+  // A shade of 2 cm, 1 cm below a lamp at 10 m.
+  scene::Scene scene = under_a_ceiling(Ceiling::faces_down, 10, false);
+  scene.instances.pop_back();
+  EXPECT_NEAR(direct_at(scene, {0, 0, 0}, {0, 1, 0}, 1).x, 9, 1e-3f);
+  scene::add_rectangle(scene, {-0.01f, 0.01f, -0.01f, 0.01f}, 9.99f, true, 0);
+  EXPECT_EQ(direct_at(scene, {0, 0, 0}, {0, 1, 0}, 1), Rgb{});
 }
 
 TEST(DirectLight, ASunGivesItsIlluminanceTimesTheCosine) {

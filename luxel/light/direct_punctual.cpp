@@ -43,8 +43,7 @@ void aim_at_punctual(const Lights& lights, size_t index, float chance, int sampl
   if (disc)
     aim_at_disc(lights, index, source, samples, r, batch);
   else
-    add_shadow_ray(batch, r, {source, 1, {1, 1, 1}}, in.towards,
-                   std::isfinite(in.distance_m) ? in.distance_m * (1 - 1e-5f) : INFINITY);
+    add_shadow_ray(batch, r, {source, 1, {1, 1, 1}}, in.towards, in.reach_m);
   // Over the disc the cosine averages to that of its centre while all of it is above the horizon.
   const float seen = disc ? batch.sources[source].sum_weight / float(samples) : cosine;
   const bool whole = disc && batch.sources[source].rays == uint32_t(samples);

@@ -6,6 +6,7 @@
 #include "luxel/light/both_punctual_light.h"
 #include "luxel/light/punctual_tree.h"
 #include "luxel/light/textured_lights.h"
+#include "luxel/scene/both_off_surface.h"
 #include "luxel/scene/facet.h"
 #include "luxel/scene/light_kinds.h"
 
@@ -106,7 +107,7 @@ PunctualIncidence incidence_from_point(const scene::PunctualLight& light,
     LUXEL_CHECK(light.profile < profiles.size());
     factor *= scene::candela_at(profiles[light.profile], light.direction, light.side, -towards);
   }
-  return {light.intensity * factor, towards, distance};
+  return {light.intensity * factor, towards, both::reach_of_shadow_ray(distance, light.position)};
 }
 
 }  // namespace

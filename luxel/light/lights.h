@@ -58,7 +58,7 @@ Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentr
 struct PunctualIncidence {
   Rgb irradiance;
   Vec3 towards;
-  float distance_m = INFINITY;
+  float reach_m = INFINITY;  ///< both::reach_of_shadow_ray
 };
 /// Point and spot: I / d^2 times glTF's range window and cone falloff [KHR_lights_punctual]; I of a
 /// light with a profile is that of the direction. `profiles` are the scene's.

@@ -7,6 +7,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/both_off_surface.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::reference {
@@ -83,7 +84,8 @@ LightSample light_from_point(const scene::Scene& scene, const scene::PunctualLig
   const float distance = length(to_light);
   if (!(distance > 0)) return {};
   const Vec3 towards = to_light / distance;
-  return {punctual.intensity * falloff(scene, punctual, towards, distance), towards, distance};
+  return {punctual.intensity * falloff(scene, punctual, towards, distance), towards,
+          both::reach_of_shadow_ray(distance, punctual.position)};
 }
 
 /// The light that comes from the centre of a punctual light, not yet divided by a chance.

@@ -66,7 +66,7 @@ struct LightSample {
   Rgb irradiance;  ///< on a surface that faces `towards`, divided by the chance to be picked
                    ///< [W/m^2]
   Vec3 towards;    ///< unit
-  float distance_m = INFINITY;
+  float reach_m = INFINITY;  ///< of its shadow ray
 };
 /// Picks one of the scene's punctual lights in proportion to what it would bring unshadowed. A sun
 /// with a disc is sampled uniformly over it. No light: irradiance is zero. `scratch` is a buffer.

@@ -224,6 +224,22 @@ TEST(Lights, PointLightsFallWithTheSquareAndEndAtTheirRange) {
   EXPECT_EQ(direct_at(lamp_scene(lamp), {0.01f, 0, 0}), 0);
 }
 
+// A ceiling hides nothing that hangs in it, whichever way it faces, and what lies 5 mm above it.
+TEST(Lights, ALampInASurfaceLightsWhatLiesBeforeIt) {
+  for (const bool up : {false, true})
+    for (const float above : {0.0f, -1e-6f, 1e-6f, -1e-5f, 1e-5f, 1e-4f, 5e-3f}) {
+      scene::PunctualLight lamp;
+      lamp.position = {0, 3 + above, 0}, lamp.intensity = gray(900);
+      scene::Scene scene = lamp_scene(lamp);
+      scene::add_rectangle(scene, {-5, 5, -5, 5}, 3, up, 0);
+      for (const double x : {0.0, 2.0}) {
+        const double h = 3 + double(above);
+        const double want = above > 1e-3f ? 0 : 900 * h / std::pow(h * h + x * x, 1.5);
+        EXPECT_NEAR(direct_at(scene, {float(x), 0, 0}), want, 1e-4 * want) << above << " " << x;
+      }
+    }
+}
+
 TEST(Lights, SpotLightsFadeBetweenTheirCones) {
   scene::PunctualLight lamp;
   lamp.kind = Kind::spot;

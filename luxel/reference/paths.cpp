@@ -71,9 +71,7 @@ void aim_at_punctual_light(const TracedScene& world, Path& path, uint32_t index,
   if (max_component(punctual.irradiance) <= 0 || cosine <= 0) return;
   if (dot(punctual.towards, path.at.geometric_normal) <= 0) return;
   work.along_shadow_rays.push_back({index, path.throughput * punctual.irradiance * (cosine / kPi)});
-  const float t_max =
-      std::isfinite(punctual.distance_m) ? punctual.distance_m * kArrived : INFINITY;
-  work.shadow_rays.push_back({path.at.position, 0, punctual.towards, t_max});
+  work.shadow_rays.push_back({path.at.position, 0, punctual.towards, punctual.reach_m});
 }
 
 /// One direction of the environment, weighted against the chance that random_ray finds it.

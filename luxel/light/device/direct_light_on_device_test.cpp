@@ -235,6 +235,33 @@ TEST_F(DirectLightOnDevice, IsThatOfLampsWithProfiles) {
   expect_the_same(scene, 16, trace::HierarchyKind::wide);
 }
 
+// E = I / h^2 straight below a lamp in the ceiling.
+TEST_F(DirectLightOnDevice, IsThatOfALampInASurface) {
+  scene::Scene scene;
+  const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f}, {});
+  scene::add_rectangle(scene, {-5, 5, -5, 5}, 0, true, gray);
+  scene::add_rectangle(scene, {-5, 5, -5, 5}, 3, false, gray);
+  transport::Elements below;
+  below.position = {{0, 1e-6f, 0}}, below.normal = below.geometric_normal = {{0, 1, 0}};
+  below.reflectance = {{0.5f, 0.5f, 0.5f}};
+  for (const float above : {0.0f, 1e-5f}) {
+    scene::PunctualLight lamp;
+    lamp.position = {0, 3 + above, 0}, lamp.intensity = {900, 900, 900};
+    scene.lights = {lamp};
+    const Lights lights = collect_lights(scene);
+    const auto on_processor = trace::RayTracer::build(scene);
+    const auto on_device = trace::DeviceRayTracer::build(*device_, scene);
+    ASSERT_TRUE(on_processor && on_device);
+    auto device = DeviceDirectLight::make(*on_device, *commands_, scene, lights);
+    ASSERT_TRUE(device);
+    Progress progress;
+    const auto found =
+        direct_light({scene, below, lights, *on_processor, &*device}, {.samples = 1}, progress);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->irradiance[0].x, 100, 1e-2f) << above;
+  }
+}
+
 // A picture with holes sends light through some of itself alone: it is the processor's.
 TEST_F(DirectLightOnDevice, IsNotWorkedOutOfLightsThatTheDeviceDoesNotKnow) {
   scene::Scene scene = blocks_under_a_picture(false);

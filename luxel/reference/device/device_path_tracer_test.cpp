@@ -139,6 +139,28 @@ TEST_F(PathsOnDevice, HaveTheLightOfAnEvenSky) {
   EXPECT_FALSE(on_device->irradiance({position, normal, normal, first}, {.samples = 33}, progress));
 }
 
+// E = I / h^2 straight below a lamp in the ceiling.
+TEST_F(PathsOnDevice, HaveTheLightOfALampInASurface) {
+  scene::Scene scene;
+  const uint32_t black = scene::add_material(scene, "black", {0, 0, 0}, {});
+  scene::add_rectangle(scene, {-5, 5, -5, 5}, 0, true, black);
+  scene::add_rectangle(scene, {-5, 5, -5, 5}, 3, false, black);
+  scene::PunctualLight lamp;
+  lamp.intensity = {900, 900, 900};
+  const std::vector<Vec3> position{{0, 1e-6f, 0}}, normal{{0, 1, 0}};
+  for (const float above : {0.0f, 1e-5f}) {
+    lamp.position = {0, 3 + above, 0}, scene.lights = {lamp};
+    const auto tracer = trace::RayTracer::build(scene);
+    ASSERT_TRUE(tracer);
+    auto on_device = DevicePathTracer::make(*device_, scene, *tracer);
+    ASSERT_TRUE(on_device);
+    Progress progress;
+    const auto found = on_device->irradiance({position, normal, normal}, {.samples = 4}, progress);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->irradiance[0].x, 100, 1e-2f) << above;
+  }
+}
+
 TEST_F(PathsOnDevice, MakeTheSamePicture) {
   const scene::Scene scene = a_bit_of_everything();
   const auto tracer = trace::RayTracer::build(scene);

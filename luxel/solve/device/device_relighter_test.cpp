@@ -76,6 +76,16 @@ TEST_F(RelighterOnDevice, KnowsGlowAndAllKindsOfLights) {
   expect_the_same(data, {{lamps, {}, {}, at_probes}});
 }
 
+// The processor's light is that of no ceiling: LiveLight.ALampAHairAboveTheCeilingIsSeen.
+TEST_F(RelighterOnDevice, SeesALampInASurface) {
+  const scene::Scene box = scene::cornell_box();
+  scene::PunctualLight lamp = kLeft;
+  lamp.position.y = scene::world_bounds(box).upper.y;
+  const std::vector<scene::PunctualLight> lamps{lamp};
+  const matrix::testing::Stage stage(box, matrix::testing::small(CodecKind::hierarchical));
+  expect_the_same(stage.data(matrix::testing::floor_places(0.55f)), {{lamps}});
+}
+
 TEST_F(RelighterOnDevice, RefusesOtherCodecs) {
   const matrix::testing::Stage stage(scene::cornell_box(),
                                      matrix::testing::small(CodecKind::dense16));

@@ -13,9 +13,6 @@ namespace {
 
 /// Places whose shadow rays go together: packets of neighbours, on the stack.
 constexpr size_t kBatch = 64;
-/// The part of the way to a light that is looked along: it may touch a surface, which does not hide
-/// it.
-constexpr float kMostOfTheWay = 0.9999f;
 
 /// Light that arrives if nothing is in the way of `ray`; zero when none would.
 struct Arriving {
@@ -27,8 +24,7 @@ Arriving arriving_at(const LitPoints& points, size_t i, const scene::PunctualLig
   const light::PunctualIncidence in = light::incidence_at(light, {}, points.position[i]);
   const float cosine = dot(points.normal[i], in.towards);
   if (!(cosine > 0) || !(dot(points.geometric_normal[i], in.towards) > 0)) return {};
-  return {in.irradiance * cosine,
-          {points.position[i], 0, in.towards, in.distance_m * kMostOfTheWay}};
+  return {in.irradiance * cosine, {points.position[i], 0, in.towards, in.reach_m}};
 }
 
 /// Adds one light's irradiance to the points [begin, end), at most kBatch.

@@ -194,6 +194,20 @@ TEST(LiveLight, ALampThatTouchesAWallIsNotHiddenByIt) {
   }
 }
 
+TEST(LiveLight, ALampAHairAboveTheCeilingIsSeen) {
+  const Ground ground = plate_places();
+  for (const float above : {0.0f, 1e-6f, 1e-5f}) {
+    scene::Scene scene = plate();
+    scene::add_rectangle(scene, {-9, 9, -9, 9}, 1, false, 0);
+    const auto lamp = live_point_at({0.5f, 1 + above, 0.5f});
+    const std::vector<Rgb> e = light(LiveStage(std::move(scene)), ground, {lamp});
+    for (size_t i = 0; i < e.size(); ++i) {
+      const double d2 = squared(lamp.position - ground.position[i]);
+      expect_share(e[i], double(lamp.position.y) / (d2 * std::sqrt(d2)), lamp, i);
+    }
+  }
+}
+
 TEST(LiveLight, ALampBehindAWallIsHidden) {
   scene::Scene scene = plate();
   scene::add_rectangle(scene, {-9, 9, -9, 9}, 1, false, 0);

@@ -106,7 +106,6 @@ void aim_at_punctual(uint number, float chance, Receiver r, inout Sum sum) {
   Source s = new_source(0, disc ? samples : 1);
   s.exact = true, s.drawn = chance < 1, s.tint = met.irradiance;
   uvec2 seed = hash64(r.seed, uvec2(0x5000 + number, 0));
-  float infinity = uintBitsToFloat(0x7f800000u);
   for (uint k = 0; k < s.planned; ++k) {
     vec3 direction = met.towards;
     float w = 1;
@@ -116,8 +115,7 @@ void aim_at_punctual(uint number, float chance, Receiver r, inout Sum sum) {
       w = max(0.0, dot(direction, r.normal));
       if (w <= 0) continue;
     }
-    add_shadow_ray(s, sum, r, w, vec3(w), direction,
-                   met.distance_m > 0 ? met.distance_m * (1 - 1e-5) : infinity);
+    add_shadow_ray(s, sum, r, w, vec3(w), direction, met.reach_m);
   }
   // Over the disc the cosine averages to that of its centre while all of it is above the horizon.
   float seen = disc ? s.sum_weight / float(samples) : cosine;

@@ -61,13 +61,13 @@ float candela_at(LightProfile p, vec3 aim, vec3 side, vec3 direction) {
   return low + of_column * (between_rows(candela + (column + 1) * p.vertical + row, of_row) - low);
 }
 
-// light::PunctualIncidence; a distance of 0 is infinite.
+// light::PunctualIncidence
 struct Incidence {
   vec3 irradiance, towards;
-  float distance_m;
+  float reach_m;
 };
 Incidence incidence_at(PunctualLight light, vec3 position) {
-  if (light.kind == kDirectional) return Incidence(light.intensity, -light.direction, 0);
+  if (light.kind == kDirectional) return Incidence(light.intensity, -light.direction, uintBitsToFloat(0x7f800000u));
   vec3 to_light = light.position - position;
   float distance_m = length(to_light);
   if (distance_m <= 0) return Incidence(vec3(0), vec3(0), 0);
@@ -76,5 +76,5 @@ Incidence incidence_at(PunctualLight light, vec3 position) {
   if (light.kind == kSpot) share *= share_in_cone(-dot(towards, light.direction), light.cos_inner, light.cos_outer);
   if (kAllEven == 0 && light.profile != 0)
     share *= candela_at(setup.profiles.at[light.profile - 1], light.direction, light.side, -towards);
-  return Incidence(light.intensity * share, towards, distance_m);
+  return Incidence(light.intensity * share, towards, reach_of_shadow_ray(distance_m, light.position));
 }

@@ -130,15 +130,15 @@ bool aim_at_emitter(inout Path path, out Aim aim) {
   return true;
 }
 
-// Irradiance on a surface that faces the light, from its centre; the distance is 0 where it is
-// infinite.
-vec3 arriving_from(PathLight light, vec3 position, out vec3 towards, out float distance_m) {
-  distance_m = 0, towards = -light.direction;
+// Irradiance on a surface that faces the light, from its centre, and how far its shadow ray goes.
+vec3 arriving_from(PathLight light, vec3 position, out vec3 towards, out float reach_m) {
+  reach_m = kInfinity, towards = -light.direction;
   if (light.kind == kDirectional) return light.intensity;
   vec3 to_light = light.position - position;
-  distance_m = length(to_light);
+  float distance_m = length(to_light);
   if (!(distance_m > 0)) return vec3(0);
   towards = to_light / distance_m;
+  reach_m = reach_of_shadow_ray(distance_m, light.position);
   float f = 1 / (distance_m * distance_m);
   if (light.range_m > 0) {
     float q = distance_m / light.range_m;
@@ -153,8 +153,8 @@ vec3 arriving_from(PathLight light, vec3 position, out vec3 towards, out float d
 
 float punctual_weight(PathLight light, Place at) {
   vec3 towards;
-  float distance_m;
-  vec3 e = arriving_from(light, at.position, towards, distance_m);
+  float reach_m;
+  vec3 e = arriving_from(light, at.position, towards, reach_m);
   return luminance(e) * max(0.0, dot(towards, at.normal) + light.reach);
 }
 
@@ -173,8 +173,8 @@ bool aim_at_punctual_light(inout Path path, out Aim aim) {
   }
   PathLight light = setup.lights.at[picked];
   vec3 towards;
-  float distance_m;
-  vec3 e = arriving_from(light, path.at.position, towards, distance_m) * (total / own);
+  float reach_m;
+  vec3 e = arriving_from(light, path.at.position, towards, reach_m) * (total / own);
   if (light.has_disc != 0) {
     vec2 u = next_vec2(path.random);
     float down = u.y * light.disc_height, radius = sqrt(max(0.0, down * (2 - down)));
@@ -184,8 +184,7 @@ bool aim_at_punctual_light(inout Path path, out Aim aim) {
   }
   float cosine = dot(towards, path.at.normal);
   if (largest(e) <= 0 || cosine <= 0 || dot(towards, path.at.geometric_normal) <= 0) return false;
-  aim = Aim(Ray(path.at.position, towards, 0, distance_m > 0 ? distance_m * kArrived : kInfinity),
-            path.throughput * e * (cosine / kPi), 0, vec2(0));
+  aim = Aim(Ray(path.at.position, towards, 0, reach_m), path.throughput * e * (cosine / kPi), 0, vec2(0));
   return true;
 }
 

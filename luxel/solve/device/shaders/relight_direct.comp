@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "luxel/light/both_punctual_light.h"
+#include "luxel/scene/both_off_surface.h"
 layout(local_size_x = 64) in;
 
 const uint kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
@@ -37,7 +38,7 @@ vec3 light_of(PunctualLight l, Place p) {
     towards = to_light * (1 / distance_m);
     share = share_at_distance(distance_m, l.range_m);
     if (l.kind == kSpot) share *= share_in_cone(-dot(towards, l.direction), l.cos_inner, l.cos_outer);
-    t_max = distance_m * 0.9999;
+    t_max = reach_of_shadow_ray(distance_m, l.position);
   }
   float cosine = dot(p.normal, towards);
   vec3 arriving = l.intensity * (share * cosine);

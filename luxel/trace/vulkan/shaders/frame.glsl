@@ -2,6 +2,7 @@
 // luxel/scene/off_surface.h have them.
 #ifndef FRAME_GLSL
 #define FRAME_GLSL
+#include "luxel/scene/both_off_surface.h"
 
 // [Duff17]
 vec3 to_world(vec3 n, vec3 local) {
@@ -12,10 +13,6 @@ vec3 to_world(vec3 n, vec3 local) {
   return tangent * local.x + bitangent * local.y + n * local.z;
 }
 
-float rounding_m(vec3 position, float size_m) {
-  vec3 size = abs(position);
-  return 4.76837158203125e-7 * max(max(size.x, max(size.y, size.z)), size_m);
-}
 vec3 off_surface(vec3 position, vec3 normal, float size_m) { return position + normal * rounding_m(position, size_m); }
 
 float luminance(vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }

@@ -31,10 +31,12 @@ std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::j
   const auto at = worst["position"].get<std::array<double, 3>>();
   return text + fmt::format(
                     "; 95 % of texels err by less than {:.3g} %; largest standard error {:.3g} % "
-                    "on '{}' at {:.4g}, {:.4g}, {:.4g}",
+                    "on '{}' at {}",
                     100 * error["relative_p95"].get<double>(),
-                    100 * worst["relative"].get<double>(), worst["node"].get<std::string>(), at[0],
-                    at[1], at[2]);
+                    100 * worst["relative"].get<double>(), worst["node"].get<std::string>(),
+                    json.contains("origin")
+                        ? fmt::format("{:.3f}, {:.3f}, {:.3f}", at[0], at[1], at[2])
+                        : fmt::format("{:.4g}, {:.4g}, {:.4g}", at[0], at[1], at[2]));
 }
 
 /// The number of triangles, and why it is more than twice the file's.

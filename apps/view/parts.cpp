@@ -20,7 +20,7 @@ Status prepare_probes(const gpu::Device& device, view::ShownScene& shown, Lookin
       return fail(ErrorCode::bad_input,
                   "there are no probes; give --probes 0.5 to get one every half metre when the "
                   "bake is done");
-    LUXEL_TRY(view::ProbeBalls balls, view::read_probes(shown.folder));
+    LUXEL_TRY(view::ProbeBalls balls, view::read_probes(shown.folder, shown.drawn().origin));
     shown.probes = std::make_shared<const view::ProbeBalls>(std::move(balls));
   }
   if (looking.of_probes == shown.probes) return {};

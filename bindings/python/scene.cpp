@@ -207,6 +207,14 @@ void add_scene(py::module_& module) {
       .def_property_readonly(
           "materials", [](const Scene& scene) { return names_of(scene.materials); },
           "Names of materials, in the order of their numbers.")
+      .def_property_readonly(
+          "origin",
+          [](const Scene& scene) {
+            const DVec3 o = scene.origin;
+            return py::array_t<double>(3, std::array{o.x, o.y, o.z}.data());
+          },
+          "The place in the world of the file that (0, 0, 0) here stands for [m]: not 0 for a file "
+          "far from its own origin. Add it to coordinates to get those of the file.")
       .def_property_readonly("triangles", &world_triangles,
                              "Corners of all triangles in the world, (n, 3, 3): those of the first "
                              "instance, then those of the next. A copy.")

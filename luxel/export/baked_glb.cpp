@@ -148,6 +148,7 @@ Result<std::vector<std::byte>> write_baked(Glb& glb, MaterialBook& book, const s
                                            const atlas::Atlas& atlas,
                                            std::span<const LightmapLayer> layers) {
   append_layers(glb, book, layers);
+  glb.origin = scene.origin;
   const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
   json roots = json::array();
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -168,6 +169,7 @@ Result<std::vector<std::byte>> write_baked(Glb& glb, MaterialBook& book, const s
 
 Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json extras) {
   Glb glb;
+  glb.origin = scene.origin;
   MaterialBook book;
   if (!extras.empty()) luxel_extras(object_in(glb.json, {"asset"})) = std::move(extras);
   std::vector<size_t> index_of(scene.meshes.size(), SIZE_MAX);

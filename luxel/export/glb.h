@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "luxel/base/result.h"
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 
 namespace luxel::export_ {
 
@@ -22,6 +22,7 @@ struct Glb {
   std::set<std::string> extensions_used;
   /// Accessors by a digest of their bytes and kind: what is alike stands in the file once.
   std::unordered_multimap<uint64_t, size_t> accessor_of_digest = {};
+  DVec3 origin = {};  ///< Scene::origin: nodes stand in the world of the file
 };
 
 /// Appends `value` to the top-level array `array` and returns its index.

@@ -6,6 +6,7 @@
 
 #include "luxel/export/json_parts.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::export_ {
 namespace {
@@ -35,11 +36,11 @@ json quaternion(const Eigen::Matrix3d& rotation) {
   return {q.x(), q.y(), q.z(), q.w()};
 }
 
-json translation_of(const Mat34& m) { return {m.row[0][3], m.row[1][3], m.row[2][3]}; }
+json json_of(DVec3 p) { return {p.x, p.y, p.z}; }
 
 /// A linear map is U S V^T: the inner node turns by V^T, the outer one scales by S and turns by U.
 /// A mirror goes into the sign of a scale.
-size_t append_sheared(Glb& glb, const Mat34& world, json content) {
+size_t append_sheared(Glb& glb, const Mat34& world, DVec3 place, json content) {
   // The matrix has dynamic size: for the fixed one gcc 12 sees an uninitialised value that is none.
   const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(
       linear_part(world), Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -50,7 +51,7 @@ size_t append_sheared(Glb& glb, const Mat34& world, json content) {
   content["rotation"] = quaternion(v.transpose());
   const size_t inner = append(glb, "nodes", std::move(content));
   return append(glb, "nodes",
-                {{"translation", translation_of(world)},
+                {{"translation", json_of(place)},
                  {"rotation", quaternion(u)},
                  {"scale", {s(0), s(1), s(2)}},
                  {"children", {inner}}});
@@ -83,18 +84,18 @@ json light_json(const scene::PunctualLight& light) {
 }  // namespace
 
 size_t append_node(Glb& glb, const Mat34& world, json content) {
-  if (world == Mat34{}) return append(glb, "nodes", std::move(content));
-  const Vec3 place = column(world, 3);
-  if (world == translation(place)) {
-    content["translation"] = {place.x, place.y, place.z};
+  const DVec3 place = scene::in_world(glb.origin, column(world, 3));
+  if (world == translation(column(world, 3))) {
+    if (place != DVec3{}) content["translation"] = json_of(place);
     return append(glb, "nodes", std::move(content));
   }
-  if (!is_trs(linear_part(world))) return append_sheared(glb, world, std::move(content));
+  if (!is_trs(linear_part(world))) return append_sheared(glb, world, place, std::move(content));
   json matrix = json::array();
-  for (size_t j = 0; j < 4; ++j) {
+  for (size_t j = 0; j < 3; ++j) {
     for (size_t i = 0; i < 3; ++i) matrix.push_back(world.row[i][j]);
-    matrix.push_back(j == 3 ? 1.0 : 0.0);
+    matrix.push_back(0.0);
   }
+  for (const double v : {place.x, place.y, place.z, 1.0}) matrix.push_back(v);
   content["matrix"] = std::move(matrix);
   return append(glb, "nodes", std::move(content));
 }

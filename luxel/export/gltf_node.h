@@ -6,9 +6,10 @@
 
 namespace luxel::export_ {
 
-/// Appends `content` (mesh, camera, light and name, without a place) as a node at `world`, and
-/// returns the index of the node that belongs into the scene's list. A sheared or flattened place,
-/// which a glTF matrix may not have, becomes a node inside another.
+/// Appends `content` (mesh, camera, light and name, without a place) as a node at `world`, which
+/// is relative to the origin of `glb`, and returns the index of the node that belongs into the
+/// scene's list. A sheared or flattened place, which a glTF matrix may not have, becomes a node
+/// inside another.
 size_t append_node(Glb& glb, const Mat34& world, nlohmann::json content);
 
 size_t append_light(Glb& glb, const scene::PunctualLight& light);

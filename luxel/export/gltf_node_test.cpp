@@ -71,6 +71,37 @@ TEST(SceneGlb, LampsWithProfilesGetTheirMean) {
   EXPECT_EQ(lights[1]["type"], "spot");
 }
 
+// All of the scene moves by its origin, in double precision, and nothing else changes.
+TEST(SceneGlb, NodesStandInTheWorldOfTheFile) {
+  scene::Scene scene = rich_scene();
+  const json near = parse(*scene_glb(scene)).j;
+  scene.origin = {512344, 88, -5403208};
+  const json far = parse(*scene_glb(scene)).j;
+  const auto place_of = [](const json& node) -> DVec3 {
+    if (node.contains("matrix"))
+      return {node["matrix"][12], node["matrix"][13], node["matrix"][14]};
+    const json at = node.value("translation", json{0, 0, 0});
+    return {at[0], at[1], at[2]};
+  };
+  std::set<size_t> inner;
+  ASSERT_EQ(far["nodes"].size(), near["nodes"].size());
+  for (const json& node : far["nodes"])
+    for (const json& child : node.value("children", json::array()))
+      inner.insert(child.get<size_t>());
+  EXPECT_FALSE(inner.empty());  // sheared instances stand in a node that has the place
+  for (size_t i = 0; i < far["nodes"].size(); ++i) {
+    json a = near["nodes"][i], b = far["nodes"][i];
+    const DVec3 moved = inner.contains(i) ? DVec3{} : scene.origin;
+    EXPECT_EQ(place_of(b), place_of(a) + moved) << b;
+    for (json* node : {&a, &b}) {
+      node->erase("translation");
+      for (size_t k = 12; k < 15 && node->contains("matrix"); ++k) (*node)["matrix"].erase(12);
+    }
+    EXPECT_EQ(a, b);
+  }
+  EXPECT_EQ(near["accessors"], far["accessors"]);
+}
+
 TEST(SceneGlb, CamerasAreKept) {
   const Document d = parse(*scene_glb(rich_scene()));
   ASSERT_EQ(d.j["cameras"].size(), 2u);

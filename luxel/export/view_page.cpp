@@ -12,6 +12,7 @@
 #include "luxel/export/small_picture.h"
 #include "luxel/export/view_template.h"
 #include "luxel/image/half.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::export_ {
 namespace {
@@ -119,12 +120,14 @@ Result<json> append_surroundings(std::string& html, const scene::Environment* ma
 
 }  // namespace
 
-json to_json(const View& view) {
+json to_json(const View& view, DVec3 origin) {
   json matrix = json::array();
-  for (size_t j = 0; j < 4; ++j) {
+  for (size_t j = 0; j < 3; ++j) {
     for (size_t i = 0; i < 3; ++i) matrix.push_back(view.camera.world_from_camera.row[i][j]);
-    matrix.push_back(j == 3 ? 1 : 0);
+    matrix.push_back(0);
   }
+  const DVec3 place = scene::in_world(origin, column(view.camera.world_from_camera, 3));
+  matrix.insert(matrix.end(), {place.x, place.y, place.z, 1});
   return {{"width", view.width},
           {"height", view.height},
           {"exposure", view.exposure},
@@ -135,17 +138,19 @@ json to_json(const View& view) {
             {"height_m", view.camera.orthographic_height_m}}}};
 }
 
-std::optional<View> view_of_json(const json& from) {
+std::optional<View> view_of_json(const json& from, DVec3 origin) {
   try {
     View out;
     from.at("width").get_to(out.width);
     from.at("height").get_to(out.height);
     from.at("exposure").get_to(out.exposure);
     const json& camera = from.at("camera");
-    const auto matrix = camera.at("matrix").get<std::vector<float>>();
+    const auto matrix = camera.at("matrix").get<std::vector<double>>();
     if (matrix.size() != 16) return std::nullopt;
     for (size_t i = 0; i < 12; ++i)
-      out.camera.world_from_camera.row[i / 4][i % 4] = matrix[4 * (i % 4) + i / 4];
+      out.camera.world_from_camera.row[i / 4][i % 4] = float(matrix[4 * (i % 4) + i / 4]);
+    const Vec3 place = to_float(DVec3{matrix[12], matrix[13], matrix[14]} - origin);
+    for (int i = 0; i < 3; ++i) out.camera.world_from_camera.row[size_t(i)][3] = place[i];
     camera.at("yfov").get_to(out.camera.fov_y_rad);
     camera.at("aspect").get_to(out.camera.aspect);
     camera.at("height_m").get_to(out.camera.orthographic_height_m);

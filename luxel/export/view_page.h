@@ -24,10 +24,11 @@ struct View {
 /// {"width", "height", "exposure", "camera": {"matrix": 16 numbers, column by column, "yfov",
 /// "aspect", "height_m"}}: `matrix` is world from camera (looks along -z, +y up), `yfov` in
 /// radians, `aspect` 0 where the camera leaves it to the picture, `height_m` > 0 for an
-/// orthographic camera.
-nlohmann::json to_json(const View& view);
+/// orthographic camera. `origin`: Scene::origin of the camera's scene; the matrix stands in the
+/// world of its file.
+nlohmann::json to_json(const View& view, DVec3 origin = {});
 /// What to_json() wrote; none where it is something else.
-std::optional<View> view_of_json(const nlohmann::json& json);
+std::optional<View> view_of_json(const nlohmann::json& json, DVec3 origin = {});
 
 struct ViewPage {
   std::string title;

@@ -83,6 +83,18 @@ TEST(ViewJson, IsReadBack) {
   EXPECT_FALSE(view_of_json(nullptr));
 }
 
+TEST(ViewJson, StandsInTheWorldOfTheFile) {
+  View view = some_view();
+  view.camera.world_from_camera = translation({1.1f, 2.2f, 3.3f});
+  const double shift[] = {512344, 88, -5403208};
+  const DVec3 origin{shift[0], shift[1], shift[2]};
+  const nlohmann::json far = to_json(view, origin), near = to_json(view);
+  for (size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(far["camera"]["matrix"][12 + k].get<double>(),
+              near["camera"]["matrix"][12 + k].get<double>() + shift[k]);
+  EXPECT_EQ(view_of_json(far, origin)->camera.world_from_camera, view.camera.world_from_camera);
+}
+
 class ViewPageTest : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -4,6 +4,7 @@
 
 #include "luxel/base/vec_double.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/origin.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
@@ -121,9 +122,11 @@ Error overflow_at(const Scene& scene, Vec3 place) {
   consider(kPiDouble * around, [&] {
     return fmt::format("the surroundings, whose radiance goes up to {:g}: lower it", around);
   });
-  return {ErrorCode::bad_input, fmt::format("the light at ({:.6g}, {:.6g}, {:.6g}) is above {:g}, "
+  const DVec3 o = scene.origin;
+  return {ErrorCode::bad_input, fmt::format("the light at ({}, {}, {}) is above {:g}, "
                                             "too bright to store; most of it can come from {}",
-                                            place.x, place.y, place.z, kMostIrradiance, who)};
+                                            short_number(place.x, o.x), short_number(place.y, o.y),
+                                            short_number(place.z, o.z), kMostIrradiance, who)};
 }
 
 Status check_held(const Scene& scene, std::span<const Rgb> light,

@@ -18,6 +18,7 @@ namespace luxel::scene {
 /// (hierarchical: less than 1 % else; tests/unit_of_length_test.cpp). So scaling inside would give
 /// what another unit in the modeller gives, but each length that comes in by an option or a script,
 /// and each that goes out into a file or a sentence, would have to know the factor.
+/// Places alone know an origin (Scene::origin): there are few of them.
 inline constexpr float kFarthest_m = 1e9f;
 
 /// Coordinates of point and spot lights, largest magnitude [m]: rays go towards them, but no box

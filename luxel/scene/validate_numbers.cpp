@@ -3,6 +3,7 @@
 
 #include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/origin.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
@@ -39,12 +40,13 @@ Status check_world(const Scene& scene, const Instance& instance, const std::stri
   const Mesh& mesh = scene.meshes[instance.mesh];
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3 p = transform_point(instance.world_from_object, mesh.positions[v]);
+    const DVec3 at = in_world(scene, p);
     if (!is_held(p))
       return fail(
           ErrorCode::bad_input,
           "{}: its transform moves {}, vertex {} to ({}, {}, {}): coordinates go up to {:g} m; "
           "move it nearer to the origin or scale the scene down",
-          where, label("mesh", instance.mesh, mesh.name), v, p.x, p.y, p.z, kFarthest_m);
+          where, label("mesh", instance.mesh, mesh.name), v, at.x, at.y, at.z, kFarthest_m);
   }
   return {};
 }

@@ -68,7 +68,8 @@ Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
   out.has_layers = layers != report.end() && layers->is_array() && !layers->empty();
   out.light_unit = light_unit_of(out.scene, settings_of_bake(folder));
   LUXEL_TRY_STATUS(add_surroundings(folder, report, out));
-  if (const auto preview = export_::view_of_json(report.value("preview", nlohmann::json()))) {
+  if (const auto preview =
+          export_::view_of_json(report.value("preview", nlohmann::json()), out.scene.origin)) {
     out.first.camera = preview->camera, out.first.exposure = preview->exposure;
     out.width = preview->width, out.height = preview->height;
     return out;

@@ -52,15 +52,17 @@ Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& 
 }
 
 /// `glb` is baked.glb. Where that holds its light in another way, or pictures of layers, which the
-/// page has already, or leaves instances out, the page has one of its own.
+/// page has already, or leaves instances out, or stands far from 0, where single precision of a
+/// graphics card is coarse, the page has one of its own.
 Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   const std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
   const bool whole = std::ranges::all_of(bake.scene.instances, &scene::Instance::lightmapped);
   if (settings.vertex_colors || settings.attach != export_::Attach::lightmap || !layers.empty() ||
-      !whole) {
+      !whole || bake.scene.origin != DVec3{}) {
     scene::Scene shown = bake.scene;
+    shown.origin = {};
     for (scene::Instance& instance : shown.instances) instance.lightmapped = true;
     LUXEL_TRY(own, export_::baked_glb(shown, bake.atlas, shown_lightmaps(bake),
                                       shown_layers(bake, false)));
@@ -132,7 +134,8 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
   LUXEL_TRY(std::vector<OutputFile> directions, direction_files(bake.directions, settings.output));
   append(std::move(directions));
   if (bake.probes) {
-    LUXEL_TRY(std::vector<OutputFile> probes, probe_files(*bake.probes, settings.output));
+    LUXEL_TRY(std::vector<OutputFile> probes,
+              probe_files(*bake.probes, bake.scene.origin, settings.output));
     append(std::move(probes));
     json["probes"] = {{"placed", bake.probes->probes.size()},
                       {"inside_solids", bake.probes->row.size() - bake.probes->probes.size()}};

@@ -139,11 +139,12 @@ nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
       {"relative_error", error},
       {"lit_share", lit},
       {"relative_error_of_lit", error * std::sqrt(lit) / kLitPart},
-      {"preview", to_json(bake.view)},
+      {"preview", to_json(bake.view, bake.scene.origin)},
       {"default_day", is_lit_by_default_day(settings.outside, bake.scene)},
       {"warnings", bake.warnings}};
   if (bake.light.delivered_error)
     out["relative_error_before_denoising"] = bake.light.relative_error;
+  if (const DVec3 o = bake.scene.origin; o != DVec3{}) out["origin"] = {o.x, o.y, o.z};
   if (!bake.light.errors.empty()) out["error"] = about_error(settings, bake);
   return out;
 }

@@ -36,8 +36,11 @@ Result<image::Image> read_lightmap(const std::filesystem::path& file) {
   return image::decode_exr(bytes, file.string());
 }
 
-Result<scene::Scene> scene_of_bake(const std::filesystem::path& folder) {
-  LUXEL_TRY(import::Imported baked, import::import_scene(folder / "baked.glb"));
+Result<scene::Scene> scene_of_bake(const std::filesystem::path& folder,
+                                   const std::optional<DVec3>& origin) {
+  import::ImportParams params;
+  params.origin = origin;
+  LUXEL_TRY(import::Imported baked, import::import_scene(folder / "baked.glb", params));
   return std::move(baked.scene);
 }
 

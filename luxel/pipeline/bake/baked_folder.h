@@ -34,8 +34,10 @@ Result<LightmapPages> read_pages(
 /// An EXR picture. Errors: those of files.
 Result<image::Image> read_lightmap(const std::filesystem::path& file);
 
-/// baked.glb, without light from outside. Errors: there is none, or it is broken.
-Result<scene::Scene> scene_of_bake(const std::filesystem::path& folder);
+/// baked.glb, without light from outside, with this Scene::origin; none: as the reader chooses.
+/// Errors: there is none, or it is broken.
+Result<scene::Scene> scene_of_bake(const std::filesystem::path& folder,
+                                   const std::optional<DVec3>& origin = {});
 
 /// Errors (bad_input): baked.glb has no colours of its own for the lightmap to light.
 Status check_has_colors(const std::filesystem::path& folder);

@@ -6,6 +6,7 @@
 #include "luxel/export/baked_glb.h"
 #include "luxel/image/codec.h"
 #include "luxel/post/dilate.h"
+#include "luxel/scene/origin.h"
 #include "luxel/transport/own_side.h"
 
 namespace luxel::pipeline {
@@ -114,21 +115,22 @@ Result<ProbeGrid> probe_grid(const light::TexelScene& in, std::span<const Rgb> i
   return grid;
 }
 
-Result<std::vector<OutputFile>> probe_files(const ProbeGrid& grid,
+Result<std::vector<OutputFile>> probe_files(const ProbeGrid& grid, DVec3 origin,
                                             const std::filesystem::path& folder) {
   image::Image picture(int(kSh2), std::max(1, int(grid.probes.size())), 3);
   nlohmann::json positions = nlohmann::json::array();
   for (size_t i = 0; i < grid.probes.size(); ++i) {
     for (size_t k = 0; k < kSh2; ++k) picture.set_rgb(int(k), int(i), grid.probes[i].irradiance[k]);
-    const Vec3 p = grid.probes[i].position;
+    const DVec3 p = scene::in_world(origin, grid.probes[i].position);
     positions.push_back({p.x, p.y, p.z});
   }
+  const DVec3 first = scene::in_world(origin, grid.origin);
   const nlohmann::json json = {
       {"content",
        "irradiance as real spherical harmonics of bands 0 to 2: row i of probes.exr has the nine "
        "coefficients of probe i"},
       {"basis", {"1", "y", "z", "x", "xy", "yz", "3z^2-1", "xz", "x^2-y^2"}},
-      {"origin", {grid.origin.x, grid.origin.y, grid.origin.z}},
+      {"origin", {first.x, first.y, first.z}},
       {"spacing", grid.spacing_m},
       {"count", grid.count},
       {"row", grid.row},

@@ -46,8 +46,9 @@ Result<ProbeGrid> probe_grid(const light::TexelScene& in, std::span<const Rgb> i
                              float spacing_m, uint64_t seed, Progress& progress);
 inline constexpr double kMostProbes = 1 << 20;
 
-/// probes.exr, a row per probe and nine columns, the coefficients; probes.json, where they stand.
-Result<std::vector<OutputFile>> probe_files(const ProbeGrid& grid,
+/// probes.exr, a row per probe and nine columns, the coefficients; probes.json, where they stand in
+/// the world of the file. `origin`: Scene::origin.
+Result<std::vector<OutputFile>> probe_files(const ProbeGrid& grid, DVec3 origin,
                                             const std::filesystem::path& folder);
 
 }  // namespace luxel::pipeline

@@ -99,7 +99,7 @@ Result<std::unique_ptr<LitBake>> read_lit_bake(const std::filesystem::path& scen
   bake->scene = std::move(imported.scene), bake->warnings = std::move(imported.warnings);
   LUXEL_TRY_STATUS(check_has_colors(folder));
   LUXEL_TRY_STATUS(check_has_all_light(folder));
-  LUXEL_TRY(bake->baked, scene_of_bake(folder));
+  LUXEL_TRY(bake->baked, scene_of_bake(folder, bake->scene.origin));
   LUXEL_TRY(bake->lightmaps, read_pages(folder, bake->baked.materials.size(), read_lightmap));
   LUXEL_TRY_STATUS(check_same_scene(*bake, scene, folder));
   const OutsideLight outside = outside_light_of_bake(folder, given, bake->warnings);

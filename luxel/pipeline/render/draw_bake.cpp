@@ -32,7 +32,7 @@ display::DrawParams size_of(const RenderSettings& settings) {
 
 /// baked.glb with the surroundings of what is drawn.
 Result<scene::Scene> baked_scene(const Subject& subject, const RenderSettings& s) {
-  LUXEL_TRY(scene::Scene baked, scene_of_bake(s.from));
+  LUXEL_TRY(scene::Scene baked, scene_of_bake(s.from, subject.scene.origin));
   baked.background = subject.scene.background;
   baked.environment = subject.scene.environment;
   return baked;

@@ -12,21 +12,21 @@ namespace luxel::view {
 namespace {
 
 /// Where probes stand. May throw json::exception.
-ProbeBalls places_of(const nlohmann::json& from) {
+ProbeBalls places_of(const nlohmann::json& from, DVec3 origin) {
   ProbeBalls out;
   out.spacing_m = from.at("spacing").get<float>();
   for (const auto& place : from.at("position")) {
-    const auto p = place.get<std::array<float, 3>>();
-    out.probes.push_back({.position = {p[0], p[1], p[2]}});
+    const auto p = place.get<std::array<double, 3>>();
+    out.probes.push_back({.position = to_float(DVec3{p[0], p[1], p[2]} - origin)});
   }
   return out;
 }
 
-Result<ProbeBalls> read_places(const std::filesystem::path& file) {
+Result<ProbeBalls> read_places(const std::filesystem::path& file, DVec3 origin) {
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
   const auto* text = reinterpret_cast<const char*>(bytes.data());
   try {
-    ProbeBalls out = places_of(nlohmann::json::parse(text, text + bytes.size()));
+    ProbeBalls out = places_of(nlohmann::json::parse(text, text + bytes.size()), origin);
     if (!(out.spacing_m > 0) || !std::isfinite(out.spacing_m))
       return fail(ErrorCode::bad_input, "{}: its spacing, {}, is not above 0", file.string(),
                   out.spacing_m);
@@ -41,14 +41,14 @@ Result<ProbeBalls> read_places(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<ProbeBalls> read_probes(const std::filesystem::path& folder) {
+Result<ProbeBalls> read_probes(const std::filesystem::path& folder, DVec3 origin) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "probes.json", ignored))
     return fail(ErrorCode::bad_input,
                 "there are no probes in {}; `luxel bake` with --probes 0.5 puts one every half "
                 "metre",
                 folder.string());
-  LUXEL_TRY(ProbeBalls out, read_places(folder / "probes.json"));
+  LUXEL_TRY(ProbeBalls out, read_places(folder / "probes.json", origin));
   const std::filesystem::path exr = folder / "probes.exr";
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(exr));
   LUXEL_TRY(const image::Image rows, image::decode_exr(bytes, exr.string()));

@@ -18,8 +18,8 @@ struct ProbeBalls {
 /// So large is a ball [m].
 inline float radius_of(const ProbeBalls& balls) { return 0.12f * balls.spacing_m; }
 
-/// Reads probes.json and probes.exr. Errors: there are none, and the sentence says how to make
-/// them; those of files; files that do not belong together.
-Result<ProbeBalls> read_probes(const std::filesystem::path& folder);
+/// Reads probes.json and probes.exr of a bake of a scene with this origin. Errors: there are none,
+/// and the sentence says how to make them; those of files; files that do not belong together.
+Result<ProbeBalls> read_probes(const std::filesystem::path& folder, DVec3 origin);
 
 }  // namespace luxel::view

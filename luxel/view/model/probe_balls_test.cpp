@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::filesystem::path folder_with_probes(size_t count) {
+std::filesystem::path folder_with_probes(size_t count, DVec3 origin = {}) {
   pipeline::ProbeGrid grid;
   grid.spacing_m = 0.25f;
   for (size_t i = 0; i < count; ++i) {
@@ -24,15 +24,15 @@ std::filesystem::path folder_with_probes(size_t count) {
   const std::filesystem::path folder =
       std::filesystem::path(::testing::TempDir()) / ("probes" + std::to_string(count));
   std::filesystem::create_directories(folder);
-  const auto files = pipeline::probe_files(grid, folder);
+  const auto files = pipeline::probe_files(grid, origin, folder);
   EXPECT_TRUE(files);
   for (const OutputFile& file : *files) EXPECT_TRUE(write_file_atomically(file.path, file.bytes));
   return folder;
 }
 
 TEST(ProbeBalls, ComeBackFromFiles) {
-  EXPECT_TRUE(read_probes(folder_with_probes(0))->probes.empty());
-  const auto read = read_probes(folder_with_probes(3));
+  EXPECT_TRUE(read_probes(folder_with_probes(0), {})->probes.empty());
+  const auto read = read_probes(folder_with_probes(3), {});
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->spacing_m, 0.25f);
   ASSERT_EQ(read->probes.size(), 3u);
@@ -40,9 +40,19 @@ TEST(ProbeBalls, ComeBackFromFiles) {
   EXPECT_EQ(read->probes[2].irradiance[8], (Rgb{8.0f / 3, 2, -1}));
 }
 
+// In the file they stand in the world, 5,000 km away; whoever shows them has a scene near 0.
+TEST(ProbeBalls, StandInTheSceneThatTheyAreOf) {
+  const DVec3 origin{512344, 88, -5403208};
+  const auto read = read_probes(folder_with_probes(3, origin), origin);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->probes[2].position, (Vec3{2, 2, -0.1f}));
+  const auto unmoved = read_probes(folder_with_probes(3, origin), {});
+  EXPECT_EQ(unmoved->probes[2].position, (Vec3{512346, 90, -5403208}));
+}
+
 TEST(ProbeBalls, SayWhatIsWrong) {
   const auto error = [](const std::filesystem::path& folder) {
-    const auto read = read_probes(folder);
+    const auto read = read_probes(folder, {});
     return read ? "no error" : read.error().message;
   };
   EXPECT_THAT(error(std::filesystem::path(::testing::TempDir()) / "without_probes"),

@@ -85,7 +85,8 @@ class LampSubject : public Subject {
  private:
   void save(const view::Walk& walk) {
     note(view::write_lamps(lamps_.opened.file,
-                           view::script_of(lamps_.desk.lamps, lamps_.opened.lamps, walk)));
+                           view::script_of(lamps_.desk.lamps, lamps_.opened.lamps, walk),
+                           lamps_.opened.read->scene.origin));
   }
   /// Whether another .lxr file was written, or could not be.
   void has_saved() {

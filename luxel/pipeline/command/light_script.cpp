@@ -19,10 +19,11 @@ using nlohmann::json;
 struct Node {
   const json& value;
   std::string where;  ///< "moves.json: lights[0]"
+  DVec3 origin;       ///< of the scene
 
   bool has(const char* field) const { return value.contains(field); }
-  Node at(const char* field) const { return {value[field], where + "." + field}; }
-  Node at(size_t k) const { return {value[k], fmt::format("{}[{}]", where, k)}; }
+  Node at(const char* field) const { return {value[field], where + "." + field, origin}; }
+  Node at(size_t k) const { return {value[k], fmt::format("{}[{}]", where, k), origin}; }
 };
 
 Failure wrong(const Node& node, std::string_view wanted) {
@@ -57,23 +58,36 @@ Result<int> whole_number(const Node& node, int least, int most) {
   return int(*value);
 }
 
-Result<Vec3> triple(const Node& node) {
+Result<DVec3> exact_triple(const Node& node) {
   const bool good = node.value.is_array() && node.value.size() == 3 &&
                     std::all_of(node.value.begin(), node.value.end(),
                                 [](const json& v) { return v.is_number(); });
-  const Vec3 v = good ? Vec3{node.value[0].get<float>(), node.value[1].get<float>(),
-                             node.value[2].get<float>()}
-                      : Vec3{};
-  if (!good || !is_finite(v)) return wrong(node, "three numbers, as [1, 2, 0.5]");
+  const DVec3 v = good ? DVec3{node.value[0].get<double>(), node.value[1].get<double>(),
+                               node.value[2].get<double>()}
+                       : DVec3{};
+  if (!good || !is_finite(to_float(v))) return wrong(node, "three numbers, as [1, 2, 0.5]");
   return v;
 }
+Result<Vec3> triple(const Node& node) {
+  LUXEL_TRY(const DVec3 v, exact_triple(node));
+  return to_float(v);
+}
 
-/// A triple, or keys {"at": seconds, "value": triple}.
-Result<Track> track(const Node& node) {
+/// A place in the scene, read as one in the world of its file.
+Result<Vec3> place(const Node& node, float farthest_m) {
+  LUXEL_TRY(const DVec3 v, exact_triple(node));
+  const Vec3 p = to_float(v - node.origin);
+  if (scene::is_held(p, farthest_m)) return p;
+  return wrong(node, fmt::format("a place with coordinates up to {:g} m", farthest_m));
+}
+Result<Vec3> place_of_light(const Node& node) { return place(node, scene::kFarthestLight_m); }
+
+/// A value, or keys {"at": seconds, "value": value}.
+Result<Track> track(const Node& node, Result<Vec3> (*read)(const Node&) = triple) {
   Track out;
   const bool keyed = node.value.is_array() && !node.value.empty() && node.value[0].is_object();
   if (!keyed) {
-    LUXEL_TRY(const Vec3 value, triple(node));
+    LUXEL_TRY(const Vec3 value, read(node));
     out.keys.push_back({0, value});
     return out;
   }
@@ -84,24 +98,11 @@ Result<Track> track(const Node& node) {
     if (!key.has("at") || !key.has("value"))
       return wrong(key, "a key, as {\"at\": 0.5, \"value\": [1, 2, 0.5]}");
     LUXEL_TRY(const double at_s, number(key.at("at"), -1e6, 1e6));
-    LUXEL_TRY(const Vec3 value, triple(key.at("value")));
+    LUXEL_TRY(const Vec3 value, read(key.at("value")));
     if (!out.keys.empty() && !(at_s > out.keys.back().at_s))
       return wrong(key.at("at"), "later than the key before it");
     out.keys.push_back({at_s, value});
   }
-  return out;
-}
-
-/// A place [m] that single precision holds.
-Status check_place(const Node& node, Vec3 place, float farthest_m) {
-  if (scene::is_held(place, farthest_m)) return {};
-  return wrong(node, fmt::format("a place with coordinates up to {:g} m", farthest_m));
-}
-
-Result<Track> place_track(const Node& node) {
-  LUXEL_TRY(Track out, track(node));
-  for (const Track::Key& key : out.keys)
-    LUXEL_TRY_STATUS(check_place(node, key.value, scene::kFarthestLight_m));
   return out;
 }
 
@@ -168,7 +169,7 @@ Result<LightScript::MovingLight> light_of(const Node& node) {
                               : "a point light has no direction; leave it out");
   // The values.
   if (has_place) {
-    LUXEL_TRY(moving.position, place_track(node.at("position")));
+    LUXEL_TRY(moving.position, track(node.at("position"), place_of_light));
   }
   if (has_direction) {
     LUXEL_TRY(moving.direction, direction_track(node.at("direction")));
@@ -209,10 +210,8 @@ Status read_camera(const Node& node, LightScript& out) {
   LUXEL_TRY_STATUS(only_fields(node, known, wanted));
   if (!node.has("eye") || !node.has("look_at")) return wrong(node, wanted);
   LightScript::View view;
-  LUXEL_TRY(view.eye, triple(node.at("eye")));
-  LUXEL_TRY(view.look_at, triple(node.at("look_at")));
-  LUXEL_TRY_STATUS(check_place(node.at("eye"), view.eye, scene::kFarthest_m));
-  LUXEL_TRY_STATUS(check_place(node.at("look_at"), view.look_at, scene::kFarthest_m));
+  LUXEL_TRY(view.eye, place(node.at("eye"), scene::kFarthest_m));
+  LUXEL_TRY(view.look_at, place(node.at("look_at"), scene::kFarthest_m));
   if (view.eye == view.look_at) return wrong(node, "a camera that looks somewhere");
   if (node.has("fov_deg")) {
     LUXEL_TRY(view.fov_deg, number(node.at("fov_deg"), 1, 170));
@@ -286,7 +285,8 @@ Vec3 value_at(const Track& track, double time_s) {
   return before.value * (1 - share) + after->value * share;
 }
 
-Result<LightScript> parse_light_script(const std::string& text, const std::string& name) {
+Result<LightScript> parse_light_script(const std::string& text, const std::string& name,
+                                       DVec3 origin) {
   // Deeper than any script: dump() would recurse until the stack ends.
   bool too_deep = false;
   const auto look = [&too_deep](int depth, json::parse_event_t, json&) {
@@ -298,7 +298,7 @@ Result<LightScript> parse_light_script(const std::string& text, const std::strin
     return fail(ErrorCode::bad_input,
                 "{}: it is not JSON that could be a script; look for a missing comma or bracket",
                 name);
-  const Node root{document, name};
+  const Node root{document, name, origin};
   constexpr std::array<std::string_view, 9> known{"frames",      "frames_per_second", "size",
                                                   "camera",      "exposure",          "lights",
                                                   "keep_lights", "emission",          "background"};

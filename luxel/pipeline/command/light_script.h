@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "luxel/base/result.h"
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 #include "luxel/pipeline/render/exposure.h"
 #include "luxel/scene/scene.h"
 
@@ -54,11 +54,15 @@ struct LightScript {
   std::optional<Track> background;  ///< none: as baked
 };
 
-/// Errors name the file, the field, its value and what it should be; unknown fields are errors.
-Result<LightScript> parse_light_script(const std::string& text, const std::string& name);
+/// Places in the text are those of the world of the scene's file, and become those of a scene of
+/// this origin. Errors name the file, the field, its value and what it should be; unknown fields
+/// are errors.
+Result<LightScript> parse_light_script(const std::string& text, const std::string& name,
+                                       DVec3 origin = {});
 
-/// The file of a script: parse_light_script() gives the script again, angles but for rounding.
-std::string text_of(const LightScript& script);
+/// The file of a script for a scene of this origin: parse_light_script() gives the script again,
+/// angles but for rounding.
+std::string text_of(const LightScript& script, DVec3 origin = {});
 
 /// The punctual lights of a frame.
 std::vector<scene::PunctualLight> lights_at(const LightScript& script, double time_s);

@@ -295,6 +295,35 @@ TEST(LightScript, IsReadAsItWasWritten) {
   EXPECT_EQ(std::get<std::string>(script_of(text_of(named)).camera), "door");
 }
 
+// In survey coordinates, where single precision has steps of half a metre.
+TEST(LightScript, PlacesAreThoseOfTheFile) {
+  constexpr DVec3 kOrigin{512344, 88, -5403216};
+  const std::string text = R"({"camera": {"eye": [512345.5, 89.625, -5403210.125],
+      "look_at": [512340, 88, -5403216.1]},
+    "lights": [{"position": [{"at": 0, "value": [512345.678, 87.5, -5403210.123]},
+                             {"at": 2, "value": [512344, 88, -5403216]}]},
+               {"kind": "spot", "position": [512346.3, 90, -5403215], "direction": [0, -1, 0],
+                "intensity": [512344, 88, 1]}]})";
+  auto script = parse_light_script(text, "moves.json", kOrigin);
+  ASSERT_TRUE(script) << script.error().message;
+  for (int again = 0; again < 2; ++again) {
+    const auto& view = std::get<LightScript::View>(script->camera);
+    EXPECT_EQ(view.eye, (Vec3{1.5f, 1.625f, 5.875f}));
+    EXPECT_EQ(view.look_at, (Vec3{-4, 0, -0.1f}));
+    ASSERT_EQ(script->lights.size(), 2u);
+    EXPECT_EQ(script->lights[0].position.keys[0].value, (Vec3{1.678f, -0.5f, 5.877f}));
+    EXPECT_EQ(script->lights[0].position.keys[1].value, (Vec3{}));
+    EXPECT_EQ(script->lights[1].position.keys[0].value, (Vec3{2.3f, 2, 1}));
+    EXPECT_EQ(script->lights[1].direction.keys[0].value, (Vec3{0, -1, 0}));
+    EXPECT_EQ(script->lights[1].intensity.keys[0].value, (Vec3{512344, 88, 1}));
+    const std::string written = text_of(*script, kOrigin);
+    for (const char* number : {"512345.678", "-5403210.123", "-5403216.1", "512346.3"})
+      EXPECT_THAT(written, HasSubstr(number));
+    script = parse_light_script(written, "again.json", kOrigin);
+    ASSERT_TRUE(script) << script.error().message;
+  }
+}
+
 TEST(LightScript, RefusesWrongGlows) {
   expect_refused({{R"({"emission": 1})", ".emission is 1", "a list"},
                   {R"({"emission": [1]})", ".emission[0] is 1", "a glowing material, as {"},

@@ -12,15 +12,16 @@ using nlohmann::ordered_json;
 
 using scene::short_number;
 
-ordered_json numbers_of(Vec3 v) {
-  return {short_number(v.x), short_number(v.y), short_number(v.z)};
+/// `origin`: of the scene, for a place.
+ordered_json numbers_of(Vec3 v, DVec3 origin = {}) {
+  return {short_number(v.x, origin.x), short_number(v.y, origin.y), short_number(v.z, origin.z)};
 }
 
-ordered_json json_of(const Track& track) {
-  if (track.keys.size() == 1) return numbers_of(track.keys[0].value);
+ordered_json json_of(const Track& track, DVec3 origin = {}) {
+  if (track.keys.size() == 1) return numbers_of(track.keys[0].value, origin);
   ordered_json out = ordered_json::array();
   for (const Track::Key& key : track.keys)
-    out.push_back({{"at", key.at_s}, {"value", numbers_of(key.value)}});
+    out.push_back({{"at", key.at_s}, {"value", numbers_of(key.value, origin)}});
   return out;
 }
 
@@ -29,10 +30,10 @@ double degrees_of(float rad, double least, double most) {
   return std::clamp(short_number(rad * 180 / kPi), least, most);
 }
 
-ordered_json json_of(const LightScript::MovingLight& moving) {
+ordered_json json_of(const LightScript::MovingLight& moving, DVec3 origin) {
   const scene::PunctualLight& light = moving.light;
   ordered_json out{{"kind", scene::name_of(light.kind)}, {"intensity", json_of(moving.intensity)}};
-  if (scene::has_position(light.kind)) out["position"] = json_of(moving.position);
+  if (scene::has_position(light.kind)) out["position"] = json_of(moving.position, origin);
   if (scene::has_direction(light.kind)) out["direction"] = json_of(moving.direction);
   if (light.range_m > 0) out["range_m"] = short_number(light.range_m);
   if (!scene::has_cone(light.kind)) return out;
@@ -42,11 +43,11 @@ ordered_json json_of(const LightScript::MovingLight& moving) {
   return out;
 }
 
-void put_camera(const LightScript& script, ordered_json& out) {
+void put_camera(const LightScript& script, DVec3 origin, ordered_json& out) {
   if (const auto* name = std::get_if<std::string>(&script.camera)) out["camera"] = *name;
   if (const auto* view = std::get_if<LightScript::View>(&script.camera))
-    out["camera"] = {{"eye", numbers_of(view->eye)},
-                     {"look_at", numbers_of(view->look_at)},
+    out["camera"] = {{"eye", numbers_of(view->eye, origin)},
+                     {"look_at", numbers_of(view->look_at, origin)},
                      {"fov_deg", view->fov_deg}};
 }
 
@@ -58,17 +59,17 @@ void put_exposure(const Exposure& exposure, ordered_json& out) {
 
 }  // namespace
 
-std::string text_of(const LightScript& script) {
+std::string text_of(const LightScript& script, DVec3 origin) {
   ordered_json out{{"frames", script.frames},
                    {"frames_per_second", script.frames_per_second},
                    {"size", {script.width, script.height}}};
-  put_camera(script, out);
+  put_camera(script, origin, out);
   put_exposure(script.exposure, out);
   if (script.keep_lights) out["keep_lights"] = true;
   if (script.background) out["background"] = json_of(*script.background);
   out["lights"] = ordered_json::array(), out["emission"] = ordered_json::array();
   for (const LightScript::MovingLight& moving : script.lights)
-    out["lights"].push_back(json_of(moving));
+    out["lights"].push_back(json_of(moving, origin));
   for (const LightScript::Glow& glow : script.glows)
     out["emission"].push_back({{"material", glow.material}, {"radiance", json_of(glow.radiance)}});
   return out.dump(1) + "\n";

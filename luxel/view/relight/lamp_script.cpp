@@ -50,9 +50,9 @@ std::filesystem::path script_beside(const std::filesystem::path& lxr) {
 }
 
 Result<std::string> write_lamps(const std::filesystem::path& lxr,
-                                const pipeline::LightScript& script) {
+                                const pipeline::LightScript& script, DVec3 origin) {
   const std::filesystem::path file = script_beside(lxr);
-  const std::string text = pipeline::text_of(script);
+  const std::string text = pipeline::text_of(script, origin);
   LUXEL_TRY_STATUS(write_file_atomically(file, std::as_bytes(std::span(text))));
   return fmt::format("wrote {}; `luxel relight --play {} --script {} -o FOLDER` draws it",
                      file.string(), lxr.string(), file.string());

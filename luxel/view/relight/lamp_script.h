@@ -16,8 +16,9 @@ pipeline::LightScript script_of(const Lamps& now, const Lamps& baked, const Walk
 /// Where the lamps of an .lxr file are kept: beside it, NAME-lamps.json.
 std::filesystem::path script_beside(const std::filesystem::path& lxr);
 
-/// Writes the script there. Returns what is to be told. Errors: those of files.
+/// Writes the script there, for a scene of this origin. Returns what is to be told. Errors: those
+/// of files.
 Result<std::string> write_lamps(const std::filesystem::path& lxr,
-                                const pipeline::LightScript& script);
+                                const pipeline::LightScript& script, DVec3 origin);
 
 }  // namespace luxel::view

@@ -135,9 +135,10 @@ Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& n
   return read_checked({name, name, extension, {}, memory, std::move(bytes)}, {});
 }
 
-Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name) {
+Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
+                            const ImportParams& params) {
   ReadingMemory memory(0);
-  return read_checked({name, name, ".glb", {}, memory, std::move(bytes)}, {});
+  return read_checked({name, name, ".glb", {}, memory, std::move(bytes)}, params);
 }
 
 }  // namespace luxel::import

@@ -31,9 +31,9 @@ struct ImportParams {
   /// Crease angle of smooth normals for meshes without normals [degrees], 0 to 180; 0: they are
   /// flat. Not set: kUsualCreaseDeg for .ply, .stl and .obj, unless that states smoothing groups,
   /// which are followed then; flat for everything else, as glTF demands.
-  std::optional<float> smooth_normals_deg;
+  std::optional<float> smooth_normals_deg{};
   /// Folders besides the scene's own in which files may lie that the scene names (scene_files.h).
-  std::vector<std::filesystem::path> search_paths;
+  std::vector<std::filesystem::path> search_paths{};
   bool trust_paths = false;  ///< files that the scene names may lie anywhere
   /// For formats that state neither (OBJ, PLY, STL, .x, ...): the axis that points up, and metres
   /// per unit. Not set: Y, metres. Set for another format: an error (bad_setting).
@@ -57,6 +57,7 @@ Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& n
                               uint64_t max_memory_bytes = 0);
 
 /// Imports a binary glTF file that lies in memory, self-contained; `name` is for messages.
-Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name);
+Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
+                            const ImportParams& params = {});
 
 }  // namespace luxel::import

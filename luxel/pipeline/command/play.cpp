@@ -104,10 +104,11 @@ Result<std::unique_ptr<View>> set_up(const PlaySettings& s, const matrix::Religh
                 "{}: it was made without places to light, so there is nothing to draw; make it "
                 "with --target texels or vertices",
                 name);
-  LUXEL_TRY(import::Imported imported, import::import_glb(data.scene_glb, name));
+  LUXEL_TRY(import::Imported imported,
+            import::import_glb(data.scene_glb, name, {.origin = DVec3{}}));
   auto view = std::make_unique<View>();
   view->scene = std::move(imported.scene);
-  view->scene.background = data.background;
+  view->scene.background = data.background, view->scene.origin = data.origin;
   LUXEL_TRY(view->tracer, trace::RayTracer::build(view->scene));
   LUXEL_TRY(view->camera, camera_of(script, view->scene, *view->tracer, name));
   out.width = script.width, out.height = script.height;
@@ -224,11 +225,11 @@ Result<Played> play(const PlaySettings& s, Progress& progress) {
   OutputFolder folder(s.output);
   LUXEL_TRY_STATUS(folder.try_out());
   LUXEL_TRY(const std::vector<std::byte> text, read_file(s.script));
-  LUXEL_TRY(const LightScript script,
-            parse_light_script({reinterpret_cast<const char*>(text.data()), text.size()},
-                               s.script.string()));
   progress.begin("read", 0);
   LUXEL_TRY(matrix::RelightData data, matrix::read_lxr(s.lxr));
+  LUXEL_TRY(const LightScript script,
+            parse_light_script({reinterpret_cast<const char*>(text.data()), text.size()},
+                               s.script.string(), data.origin));
   LUXEL_TRY_STATUS(check_names(script, data, s.script.string()));
   Played out;
   LUXEL_TRY(const std::unique_ptr<View> view, set_up(s, data, script, out));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "luxel/base/digest.h"
 #include "luxel/base/file.h"
@@ -132,7 +133,8 @@ Result<Wanted> wanted_of(scene::Scene& scene, const RelightSettings& s,
   Wanted out;
   LUXEL_TRY(out.glb, export_::scene_glb(scene));
   if (s.target == "none") return out;
-  LUXEL_TRY(const import::Imported as_read, import::import_glb(out.glb, s.scene.string()));
+  LUXEL_TRY(const import::Imported as_read,
+            import::import_glb(out.glb, s.scene.string(), {.origin = DVec3{}}));
   out.target = vertices_of(as_read.scene);
   return out;
 }
@@ -225,7 +227,10 @@ Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& 
         "the sky of an .lxr file has one colour: the environment map becomes a uniform sky that "
         "lights the ground as much");
   LUXEL_TRY_STATUS(fits(s));
+  // The scene in the file lies where its patches do.
+  const DVec3 origin = std::exchange(scene.origin, {});
   LUXEL_TRY(Wanted wanted, wanted_of(scene, s, out.warnings, progress));
+  scene.origin = origin;
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   matrix::RelightParams params;

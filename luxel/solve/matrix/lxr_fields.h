@@ -14,6 +14,11 @@ void fields(Archive& a, Is<Vec3> auto& v) {
   a(x, y, z);
 }
 template <class Archive>
+void fields(Archive& a, Is<DVec3> auto& v) {
+  auto& [x, y, z] = v;
+  a(x, y, z);
+}
+template <class Archive>
 void fields(Archive& a, Is<PatchPoint> auto& x) {
   auto& [position, normal] = x;
   a(position, normal);
@@ -120,7 +125,7 @@ void for_each_chunk(Is<RelightData> auto& x, const Visit& visit) {
   [[maybe_unused]] const auto& [position, normal, area_m2, reflectance, emission, sky, material,
                                 first_probe, probe, material_name, bounces, glow, codec_error,
                                 usual_codec_error, baked_error, lamp_error, codec, target,
-                                occluders, lights, background, scene_glb] = x;
+                                occluders, lights, background, scene_glb, origin] = x;
   visit("PTCH", 0, [&](auto& a) {
     a(x.position, x.normal, x.area_m2, x.reflectance, x.emission, x.sky, x.material, x.first_probe,
       x.probe);
@@ -132,6 +137,7 @@ void for_each_chunk(Is<RelightData> auto& x, const Visit& visit) {
   visit("LAMP", 0, [&](auto& a) { a(x.lights, x.background); });
   visit("GLTF", 0, [&](auto& a) { a(x.scene_glb); });
   visit("GLOW", 1, [&](auto& a) { a(x.glow, x.usual_codec_error, x.baked_error, x.lamp_error); });
+  visit("ORIG", 2, [&](auto& a) { a(x.origin); });
 }
 
 }  // namespace luxel::matrix

@@ -104,6 +104,7 @@ void expect_same(const RelightData& a, const RelightData& b) {
   for (size_t k = 0; k < a.lights.size(); ++k) expect_same(a.lights[k], b.lights[k]);
   EXPECT_TRUE(same(a.background, b.background));
   EXPECT_TRUE(same(a.scene_glb, b.scene_glb));
+  EXPECT_EQ(a.origin, b.origin);
 }
 
 std::string error_of(const Bytes& file) {
@@ -114,6 +115,7 @@ std::string error_of(const Bytes& file) {
 TEST(Lxr, ComesBackBitForBit) {
   RelightData data = small_data();
   data.position[3].x = -0.0f, data.position[4].x = 1e-44f;  // a denormal
+  data.origin = {512256, -1e-300, -5403200.1};
   for (const Codec& codec : {data.codec, Codec(small_dense(false)), Codec(small_dense(true)),
                              Codec(testing::small_bc1()), Codec(testing::small_low_rank())}) {
     data.codec = codec;
@@ -242,10 +244,24 @@ RelightData lifted(RelightData data) {
   return data;
 }
 
-TEST(Lxr, LiftsThePlacesOfVersion11) {
+/// A file of an earlier minor version, which lacks the last chunks.
+Bytes of_earlier(uint16_t minor, std::initializer_list<std::string_view> lacking) {
   Bytes file = encode_lxr(small_data());
-  testing::put_at(file, 10, uint16_t(1));
+  for (const std::string_view tag : lacking) {
+    size_t at = 32, last = 32;
+    for (; at < file.size(); at += 16 + size_t(testing::value_at<uint64_t>(file, at + 8)))
+      last = at;
+    EXPECT_EQ(std::memcmp(file.data() + last + 4, tag.data(), 4), 0) << tag;
+    file.resize(last);
+    testing::put_at(file, 12, testing::value_at<uint32_t>(file, 12) - 1);
+  }
+  testing::put_at(file, 10, minor);
   testing::mend(file);
+  return file;
+}
+
+TEST(Lxr, LiftsThePlacesOfVersion11) {
+  const Bytes file = of_earlier(1, {"ORIG"});
   const auto back = decode_lxr(file, "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   expect_same(*back, lifted(small_data()));
@@ -253,17 +269,7 @@ TEST(Lxr, LiftsThePlacesOfVersion11) {
 
 TEST(Lxr, ReadsVersion10) {
   RelightData data = small_data();
-  Bytes file = encode_lxr(data);
-  while (true) {  // the last chunk is the one that 1.1 added
-    size_t at = 32, last = 32;
-    for (; at < file.size(); at += 16 + size_t(testing::value_at<uint64_t>(file, at + 8)))
-      last = at;
-    if (std::memcmp(file.data() + last + 4, "GLOW", 4) != 0) break;
-    file.resize(last);
-    testing::put_at(file, 12, testing::value_at<uint32_t>(file, 12) - 1);
-  }
-  testing::put_at(file, 10, uint16_t(0));
-  testing::mend(file);
+  const Bytes file = of_earlier(0, {"ORIG", "GLOW"});
   const auto back = decode_lxr(file, "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   data.glow = {}, data.usual_codec_error = data.baked_error = data.lamp_error = 0;
@@ -337,7 +343,7 @@ TEST(Lxr, MendedDamageIsAnErrorOrOtherData) {
           play(*data);
         }
       }
-    EXPECT_GE(errors, 3u * 4u * 8u);  // the tags of eight chunks, at least
+    EXPECT_GE(errors, 3u * 4u * 9u);  // the tags of nine chunks, at least
   }
 }
 
@@ -363,6 +369,9 @@ TEST(Lxr, HoldsNoPlaceThatTheRayTracerDoesNot) {
   EXPECT_THAT(error_with([&](RelightData& d) { d.lights[1].position.z = 1e19f; }),
               HasSubstr("lights: the position of number 1, "));
   EXPECT_THAT(error_with([&](RelightData& d) { d.occluders.position[3].y = 9e8f; }), "none");
+  for (const double far : {-1.1e9, double(INFINITY), double(NAN)})
+    EXPECT_THAT(error_with([&](RelightData& d) { d.origin.y = far; }),
+                HasSubstr(fmt::format("origin: number 1, {}, is not in", far)));
 }
 
 TEST(Lxr, HoldsNoLightThatIsTooBright) {

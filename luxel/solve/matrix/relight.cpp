@@ -72,6 +72,7 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
                                            {target.position, target.geometric_normal}, progress));
   out.target = std::move(target);
   out.occluders = occluders_of(scene);
+  out.origin = scene.origin;
   return out;
 }
 

@@ -352,6 +352,7 @@ Status check(const RelightData& d) {
   LUXEL_TRY_STATUS(check(d.target, d.size()));
   LUXEL_TRY_STATUS(check(d.occluders));
   LUXEL_TRY_STATUS(check_lights(d));
+  LUXEL_TRY_STATUS(placed("origin", std::array{d.origin.x, d.origin.y, d.origin.z}));
   return check_glb(d.scene_glb);
 }
 

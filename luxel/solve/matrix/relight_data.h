@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 #include "luxel/scene/scene.h"
 #include "luxel/solve/matrix/bc1.h"
 #include "luxel/solve/matrix/bounces.h"
@@ -94,6 +94,7 @@ struct RelightData {
   Occluders occluders;
   /// The scene with its lightmap coordinates as binary glTF, for players; may be empty.
   std::vector<std::byte> scene_glb;
+  DVec3 origin{};  ///< scene::Scene::origin of all places here, those of `scene_glb` too
 
   /// The number of patches.
   size_t size() const { return area_m2.size(); }

@@ -35,12 +35,13 @@ std::string digest_of_file(std::span<const std::byte> bytes) {
 
 /// May throw json::exception: the file may hold anything.
 std::optional<pipeline::Relightable> read_kept(const json& words, const std::string& wanted,
-                                               const std::filesystem::path& lxr) {
+                                               DVec3 origin, const std::filesystem::path& lxr) {
   if (text_of_made(words.at("made_of")) != wanted) return std::nullopt;
   const auto bytes = read_file(lxr);
   if (!bytes || words.at("file") != digest_of_file(*bytes)) return std::nullopt;
   auto data = matrix::decode_lxr(*bytes, lxr.string());
-  if (!data) return std::nullopt;
+  // Light does not depend on the origin, so that digests leave it out.
+  if (!data || data->origin != origin) return std::nullopt;
   return pipeline::Relightable{std::move(*data),
                                words.at("warnings").get<std::vector<std::string>>()};
 }
@@ -55,7 +56,7 @@ std::optional<pipeline::Relightable> kept_lxr(const scene::Scene& scene,
   if (!text) return std::nullopt;
   const char* begin = reinterpret_cast<const char*>(text->data());
   const json words = json::parse(begin, begin + text->size());
-  return read_kept(words, text_of_made(made_of(scene, settings)), settings.output);
+  return read_kept(words, text_of_made(made_of(scene, settings)), scene.origin, settings.output);
 } catch (const json::exception&) {
   return std::nullopt;
 }

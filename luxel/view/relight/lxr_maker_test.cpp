@@ -10,6 +10,7 @@
 #include "luxel/base/file.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
+#include "luxel/solve/matrix/lxr.h"
 #include "tests/scratch_folder.h"
 
 namespace luxel::view {
@@ -72,6 +73,16 @@ TEST_F(LxrMakerTest, IsMadeOnceOfASceneAndItsSettings) {
   EXPECT_TRUE(is_made_anew()) << "the file is another one than was written";
   std::filesystem::remove(folder_.path / "new/relight.json");
   EXPECT_TRUE(is_made_anew()) << "whose it is nobody knows";
+}
+
+TEST_F(LxrMakerTest, IsMadeAnewWhereTheOriginIsAnotherOne) {
+  EXPECT_TRUE(is_made_anew());
+  scene::Scene moved = to_make_.read->scene;
+  moved.origin = {1024, 0, -4096};
+  to_make_.read = *read_scene(std::move(moved), pipeline::BakeSettings{});
+  EXPECT_TRUE(is_made_anew()) << "its places are relative to that";
+  EXPECT_FALSE(is_made_anew());
+  EXPECT_EQ(matrix::read_lxr(file())->origin, to_make_.read->scene.origin);
 }
 
 TEST_F(LxrMakerTest, HasTheLampsAsTheyAreEdited) {

@@ -57,10 +57,11 @@ Result<OpenedLxr> opened_lxr(matrix::RelightData data, const std::filesystem::pa
                              const ReadScene* before) {
   const std::string name = file.string();
   LUXEL_TRY_STATUS(check_texels(data, name));
-  LUXEL_TRY(import::Imported imported, import::import_glb(data.scene_glb, name));
+  LUXEL_TRY(import::Imported imported,
+            import::import_glb(data.scene_glb, name, {.origin = DVec3{}}));
   auto read = std::make_shared<ReadScene>();
   read->scene = std::move(imported.scene);
-  read->scene.background = data.background;
+  read->scene.background = data.background, read->scene.origin = data.origin;
   Lamps lamps = lamps_of(data);
   LUXEL_TRY(RelitLight light, make_relit_light(std::move(data)));
   relight(lamps, light);

@@ -66,7 +66,8 @@ Result<matrix::RelightData> with_lamps(const matrix::RelightData& data, const La
       out.emission[i] = emission_to_keep(out.emission[i], baked.glows[m].radiance, is[m]);
   }
   if (data.scene_glb.empty()) return out;
-  LUXEL_TRY(const import::Imported file, import::import_glb(data.scene_glb, name));
+  LUXEL_TRY(const import::Imported file,
+            import::import_glb(data.scene_glb, name, {.origin = DVec3{}}));
   const export_::ReadUri none = [&](const std::string&, const std::string& what) {
     return fail(ErrorCode::bad_input, "{}: {} lies outside of it", name, what);
   };

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/base/file.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/import/import.h"
 #include "luxel/scene/digest.h"
@@ -11,6 +12,8 @@
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/view/relight/lamp_script.h"
+#include "luxel/view/relight/open_lxr.h"
 #include "luxel/view/relight/relit_light.h"
 #include "tests/scratch_folder.h"
 
@@ -42,6 +45,7 @@ matrix::RelightData data_to_save() {
   EXPECT_TRUE(data) << data.error().message;
   data->baked_error = 0.25, data->lamp_error = 0.5;
   data->scene_glb = *export_::scene_glb(scene);
+  data->origin = {512344, 88, -5403216};
   return std::move(*data);
 }
 
@@ -103,6 +107,24 @@ TEST_F(SavedLxr, HasTheLampsOfTheDeskAndAllElseAsItWas) {
   EXPECT_EQ(same.baked_error, 0) << "nobody has measured it";
   same.baked_error = data_.baked_error;
   EXPECT_EQ(matrix::encode_lxr(same), matrix::encode_lxr(data_));
+}
+
+TEST_F(SavedLxr, IsOpenedWhereItLies) {
+  const auto opened = opened_lxr(saved_, "box-lamps.lxr", nullptr);
+  ASSERT_TRUE(opened) << opened.error().message;
+  EXPECT_EQ(opened->read->scene.origin, data_.origin);
+  EXPECT_LT(length(scene::world_bounds(opened->read->scene).centre()), 1);
+}
+
+TEST_F(SavedLxr, LampsAreWrittenInTheWorldOfTheFile) {
+  pipeline::LightScript script;
+  script.lights.push_back({{}, {{{0, {1, 1, 1}}}}, {{{0, {1.678f, -0.5f, 5.877f}}}}, {}});
+  script.lights[0].direction.keys = {{0, {0, -1, 0}}};
+  ASSERT_TRUE(write_lamps(folder_.path / "box.lxr", script, data_.origin));
+  const auto bytes = read_file(script_beside(folder_.path / "box.lxr"));
+  ASSERT_TRUE(bytes);
+  const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  EXPECT_NE(text.find("512345.678"), std::string::npos) << text;
 }
 
 TEST_F(SavedLxr, HasTheSceneWithThoseLamps) {

@@ -24,12 +24,12 @@ void lay_out_choices(const char* label, std::span<const EditChoice> choices, int
   ImGui::EndCombo();
 }
 
-void lay_out_place(EditPanel& panel) {
+void lay_out_instance(EditPanel& panel) {
   for (size_t i = 0; i < panel.tools.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     ImGui::RadioButton(panel.tools[i], &panel.tool, int(i));
   }
-  ImGui::DragFloat3("place", panel.place.place.data(), 0.01f, 0, 0, "%.3f m");
+  lay_out_place(panel.place.place);
   ImGui::DragFloat3("angles", panel.place.angles_deg.data(), 0.5f, 0, 0, "%.1f deg");
   ImGui::DragFloat3("scale", panel.place.scale.data(), 0.01f, 0, 0, "%.3f");
 }
@@ -93,7 +93,7 @@ void lay_out_edit(EditPanel& panel) {
   lay_out_steps(panel);
   const int instance = panel.instance, material = panel.material, lamp = panel.lamp;
   lay_out_choices("object", panel.instances, panel.instance);
-  if (instance >= 0 && panel.instance == instance) lay_out_place(panel);
+  if (instance >= 0 && panel.instance == instance) lay_out_instance(panel);
   lay_out_choices("material", panel.materials, panel.material);
   if (material >= 0 && panel.material == material) lay_out_material(panel);
   lay_out_choices("lamp", panel.lamps, panel.lamp);

@@ -18,7 +18,8 @@ struct EditChoice {
 
 /// Numbers of an instance. All may be changed.
 struct PlaceLines {
-  std::array<float, 3> place{}, angles_deg{}, scale{};
+  std::array<double, 3> place{};  ///< in the world of the file [m]
+  std::array<float, 3> angles_deg{}, scale{};
   friend bool operator==(const PlaceLines&, const PlaceLines&) = default;
 };
 

@@ -28,8 +28,9 @@ std::vector<EditChoice> choices_of(const Parts& parts, const char* kind) {
 
 bool is_in_lux(const EditSession& session) { return session.tools.desk.read->light_unit == "lux"; }
 
-PlaceLines lines_of(const view::Placement& placement) {
-  return {numbers(placement.place), numbers(placement.angles_deg), numbers(placement.scale)};
+PlaceLines lines_of(const view::Placement& placement, DVec3 origin) {
+  return {numbers(placement.place, origin), numbers(placement.angles_deg),
+          numbers(placement.scale)};
 }
 
 MaterialLine line_of(const scene::Material& material, const view::MaterialLook& now, bool is_lux) {
@@ -66,7 +67,8 @@ void take_place(const EditPanel& panel, const EditPanel& before, view::EditTools
   const auto take = [](const auto& now, const auto& was, Vec3& out) {
     if (now != was) out = vector(now);
   };
-  take(panel.place.place, before.place.place, to.place);
+  if (panel.place.place != before.place.place)
+    to.place = vector(panel.place.place, tools.desk.read->scene.origin);
   take(panel.place.angles_deg, before.place.angles_deg, to.angles_deg);
   take(panel.place.scale, before.place.scale, to.scale);
   const uint32_t instance = *tools.selected.instance;
@@ -99,7 +101,7 @@ void take_numbers(const EditPanel& panel, const EditPanel& before, EditSession& 
               tools.desk);
   if (selected.lamp && panel.light != before.light) {
     view::Lamp lamp = tools.desk.now.lamps[*selected.lamp];
-    take_line(before.light, panel.light, lamp);
+    take_line(before.light, panel.light, tools.desk.read->scene.origin, lamp);
     drag_edit(view::lamp_set(*selected.lamp, lamp, std::nullopt, tools.desk), tools.desk);
   }
   if (selected.lamp && panel.asks_for_sun) take_sun(panel, session);
@@ -130,6 +132,7 @@ EditSession begin_edits(std::shared_ptr<const view::ReadScene> read,
 EditPanel panel_of(const EditSession& session) {
   const view::EditTools& tools = session.tools;
   const view::EditDesk& desk = tools.desk;
+  const DVec3 origin = desk.read->scene.origin;
   EditPanel out;
   out.tools = view::kTools, out.tool = int(tools.tool);
   out.can_undo = !desk.history.done.empty(), out.can_redo = !desk.history.undone.empty();
@@ -137,14 +140,15 @@ EditPanel panel_of(const EditSession& session) {
   out.instances = session.instances, out.materials = session.materials;
   for (size_t i = 0; i < desk.now.lamps.size(); ++i)
     if (const view::Lamp& lamp = desk.now.lamps[i]; !lamp.is_deleted)
-      out.lamps.push_back({line_of(lamp, false).name + (lamp.is_on ? "" : " (off)"), int(i)});
+      out.lamps.push_back(
+          {line_of(lamp, false, origin).name + (lamp.is_on ? "" : " (off)"), int(i)});
   out.instance = number_of(tools.selected.instance);
   out.material = number_of(tools.selected.material), out.lamp = number_of(tools.selected.lamp);
-  if (out.instance >= 0) out.place = lines_of(placement_of(tools));
+  if (out.instance >= 0) out.place = lines_of(placement_of(tools), origin);
   if (const auto m = tools.selected.material)
     out.look = line_of(desk.read->scene.materials[*m], desk.now.materials[*m], is_in_lux(session));
   if (const auto lamp = tools.selected.lamp)
-    out.light = line_of(desk.now.lamps[*lamp], is_in_lux(session));
+    out.light = line_of(desk.now.lamps[*lamp], is_in_lux(session), origin);
   out.sun = session.sun;
   return out;
 }

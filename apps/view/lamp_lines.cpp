@@ -2,6 +2,7 @@
 
 #include "luxel/image/color.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/origin.h"
 #include "luxel/scene/sky.h"
 
 namespace luxel::view_window {
@@ -13,6 +14,13 @@ constexpr float kDegree = kPi / 180;
 
 std::array<float, 3> numbers(Vec3 v) { return {v.x, v.y, v.z}; }
 Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> numbers(Vec3 p, DVec3 origin) {
+  return {scene::short_number(p.x, origin.x), scene::short_number(p.y, origin.y),
+          scene::short_number(p.z, origin.z)};
+}
+Vec3 vector(const std::array<double, 3>& p, DVec3 origin) {
+  return to_float(DVec3{p[0], p[1], p[2]} - origin);
+}
 
 void set_light(Rgb light, LampLine& line) {
   line.strength = max_component(light);
@@ -27,7 +35,7 @@ Rgb light_of(const LampLine& line) {
          line.strength;
 }
 
-LampLine line_of(const view::Lamp& lamp, bool is_lux) {
+LampLine line_of(const view::Lamp& lamp, bool is_lux, DVec3 origin) {
   const scene::PunctualLight& light = lamp.light;
   LampLine out;
   out.name = light.name.empty() ? std::string(scene::name_of(light.kind)) : light.name;
@@ -36,7 +44,7 @@ LampLine line_of(const view::Lamp& lamp, bool is_lux) {
   out.has_direction = scene::has_direction(light.kind);
   out.unit = out.has_place ? (is_lux ? "cd" : "W/sr") : (is_lux ? "lux" : "W/m2");
   if (light.profile != scene::kNone) out.unit = "x its profile";
-  out.place = numbers(light.position), out.direction = numbers(light.direction);
+  out.place = numbers(light.position, origin), out.direction = numbers(light.direction);
   out.has_cone = scene::has_cone(light.kind), out.has_disc = !out.has_place;
   out.cone_deg = light.outer_cone_rad / kDegree,
   out.inner_cone_deg = light.inner_cone_rad / kDegree;
@@ -45,11 +53,11 @@ LampLine line_of(const view::Lamp& lamp, bool is_lux) {
   return out;
 }
 
-void take_line(const LampLine& before, const LampLine& now, view::Lamp& lamp) {
+void take_line(const LampLine& before, const LampLine& now, DVec3 origin, view::Lamp& lamp) {
   scene::PunctualLight& light = lamp.light;
   lamp.is_on = now.is_on;
   if (now.color != before.color || now.strength != before.strength) light.intensity = light_of(now);
-  if (now.place != before.place) light.position = vector(now.place);
+  if (now.place != before.place) light.position = vector(now.place, origin);
   if (now.direction != before.direction && length(vector(now.direction)) > 0)
     light.direction = normalize(vector(now.direction));
   if (now.cone_deg != before.cone_deg) light.outer_cone_rad = now.cone_deg * kDegree;

@@ -9,15 +9,18 @@ namespace luxel::view_window {
 
 std::array<float, 3> numbers(Vec3 v);
 Vec3 vector(const std::array<float, 3>& v);
+/// A place of a scene of this origin in the world of its file, and back.
+std::array<double, 3> numbers(Vec3 place, DVec3 origin);
+Vec3 vector(const std::array<double, 3>& place, DVec3 origin);
 
 /// Light as a colour and a strength, and back.
 void set_light(Rgb light, LampLine& line);
 Rgb light_of(const LampLine& line);
 
-/// `is_lux`: intensities are in candela and lux, else in watts.
-LampLine line_of(const view::Lamp& lamp, bool is_lux);
+/// `is_lux`: intensities are in candela and lux, else in watts. `origin`: of the scene.
+LampLine line_of(const view::Lamp& lamp, bool is_lux, DVec3 origin);
 /// Only what was changed: other numbers are rounded on their way through the panel.
-void take_line(const LampLine& before, const LampLine& now, view::Lamp& lamp);
+void take_line(const LampLine& before, const LampLine& now, DVec3 origin, view::Lamp& lamp);
 
 /// A lamp more, so bright that a grey surface that faces it, from a quarter of the scene's size, is
 /// shown half as bright as can be.

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace luxel::view_window {
@@ -96,13 +97,28 @@ void lay_out_buttons(LampPanel& panel) {
 
 }  // namespace
 
+void lay_out_place(std::array<double, 3>& place) {
+  constexpr double kMostInALine_m = 1e4;
+  const auto is_long = [](double x) { return std::abs(x) >= kMostInALine_m; };
+  if (std::ranges::any_of(place, is_long)) {
+    for (size_t k = 0; k < 3; ++k) {
+      const std::string label = std::string("place ") + "xyz"[k];
+      ImGui::DragScalar(label.c_str(), ImGuiDataType_Double, &place[k], 0.01f, nullptr, nullptr,
+                        "%.3f m");
+    }
+    return;
+  }
+  ImGui::DragScalarN("place", ImGuiDataType_Double, place.data(), 3, 0.01f, nullptr, nullptr,
+                     "%.3f m");
+}
+
 void lay_out_line(LampLine& line) {
   ImGui::Checkbox("on", &line.is_on);
   ImGui::SameLine();
   ImGui::ColorEdit3("colour", line.color.data(), ImGuiColorEditFlags_NoInputs);
   ImGui::DragFloat("strength", &line.strength, std::max(1e-6f, 0.01f * line.strength), 0, 1e12f,
                    ("%.4g " + line.unit).c_str());
-  if (line.has_place) ImGui::DragFloat3("place", line.place.data(), 0.01f, 0, 0, "%.3f m");
+  if (line.has_place) lay_out_place(line.place);
   if (line.has_direction) ImGui::DragFloat3("direction", line.direction.data(), 0.01f, -1, 1);
   if (line.has_cone) {
     ImGui::DragFloat("cone", &line.cone_deg, 0.2f, 0.1f, 90, "%.1f deg");

@@ -14,7 +14,8 @@ struct LampLine {
   std::array<float, 3> color{1, 1, 1};  ///< display values, the largest one 1
   float strength = 1;                   ///< of the largest [unit]
   bool has_place = false, has_direction = false;
-  std::array<float, 3> place{}, direction{};
+  std::array<double, 3> place{};  ///< in the world of the file [m]
+  std::array<float, 3> direction{};
   bool has_cone = false, has_disc = false;
   float cone_deg = 0, inner_cone_deg = 0;  ///< of a spot: half the angle of its light
   float disc_deg = 0;                      ///< of a sun: the angle of its disc
@@ -39,6 +40,8 @@ struct LampPanel {
   std::vector<StageTimes> history;                  ///< of the last pictures, the newest last
 };
 
+/// Three numbers of a place [m].
+void lay_out_place(std::array<double, 3>& place);
 /// Both lay themselves out in the window of ImGui that is open.
 void lay_out_line(LampLine& line);
 void lay_out_lamps(LampPanel& panel);

@@ -33,13 +33,15 @@ std::vector<uint32_t> glows_shown(const LampSession& session) {
 }  // namespace
 
 LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing) {
-  view::LampDesk desk = view::begin_desk(opened.lamps, scene::world_bounds(opened.read->scene));
+  view::LampDesk desk = view::begin_desk(opened.lamps, scene::world_bounds(opened.read->scene),
+                                         opened.read->scene.origin);
   return LampSession{std::move(opened), std::move(drawing), std::move(desk)};
 }
 
 LampPanel panel_of(const LampSession& session) {
   LampPanel out;
-  for (const view::Lamp& lamp : session.desk.lamps.lamps) out.lamps.push_back(line_of(lamp, false));
+  for (const view::Lamp& lamp : session.desk.lamps.lamps)
+    out.lamps.push_back(line_of(lamp, false, session.desk.origin));
   for (const uint32_t m : glows_shown(session))
     out.glows.push_back(line_of(session.desk.lamps.glows[m]));
   out.selected = session.desk.selected ? int(*session.desk.selected) : -1;
@@ -57,7 +59,7 @@ void take_changes(const LampPanel& panel, float exposure, LampSession& session) 
   view::LampDesk& desk = session.desk;
   for (size_t i = 0; i < before.lamps.size(); ++i) {
     if (panel.lamps[i] == before.lamps[i]) continue;
-    take_line(before.lamps[i], panel.lamps[i], desk.lamps.lamps[i]);
+    take_line(before.lamps[i], panel.lamps[i], desk.origin, desk.lamps.lamps[i]);
     ++desk.changes;
   }
   const std::vector<uint32_t> glows = glows_shown(session);

@@ -15,12 +15,14 @@ view::ShownLight shown_light(const view::SolutionView& view, view::LightKind kin
 
 std::vector<std::string> selected_lines(const SelectionSession& s) {
   const view::Selection& selected = s.desk.selected;
+  if (!s.examined) return {};
+  const DVec3 origin = s.examined->view.scene.origin;
   if (selected.link) return lines_of(facts_of(s.examined->view, *selected.link), s.unit);
   if (selected.has_element())
     return lines_of(facts_of(s.examined->view, selected.path, selected.level), s.unit);
   if (selected.triangle)
-    return lines_of(view::triangle_facts(s.examined->view, *selected.triangle), s.unit);
-  if (selected.discontinuity) return lines_of(*selected.discontinuity, s.unit);
+    return lines_of(view::triangle_facts(s.examined->view, *selected.triangle), s.unit, origin);
+  if (selected.discontinuity) return lines_of(*selected.discontinuity, s.unit, origin);
   return {};
 }
 
@@ -98,7 +100,8 @@ SelectionPanel selection_lines(const SelectionSession& s) {
   out.graph_shows = desk.graph_shows;
   out.selected = selected_lines(s), out.can_step = desk.selected.has_element();
   if (desk.probed.graph) out.curve = plot_of(*desk.probed.graph, s.unit);
-  if (desk.probed.light) out.light = lines_of(*desk.probed.light, s.unit);
+  if (desk.probed.light)
+    out.light = lines_of(*desk.probed.light, s.unit, s.examined->view.scene.origin);
   if (desk.probed.sources) {
     for (const view::SeenSource& source : desk.probed.sources->sources)
       out.sources.push_back(picture_of(source, s.unit));

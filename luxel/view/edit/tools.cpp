@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "luxel/scene/light_kinds.h"
+#include "luxel/scene/origin.h"
 #include "luxel/view/edit/pick.h"
 #include "luxel/view/edit/sky_sun.h"
 #include "luxel/view/model/lamp_change.h"
@@ -185,14 +186,15 @@ struct DoAsked {
     const Mat34& now = tools.desk.now.world_from_object[*instance];
     const Vec3 middle = object_bounds(tools.desk.read->scene, *instance).centre();
     Placement to = placement_of(now, middle);
-    to.place = event.to.value_or(to.place), to.scale = event.scale.value_or(to.scale);
+    if (event.to) to.place = scene::in_scene(tools.desk.read->scene, *event.to);
+    to.scale = event.scale.value_or(to.scale);
     to.angles_deg = event.angles_deg.value_or(to.angles_deg);
     do_edit(InstanceMoved{*instance, placed(now, middle, to)}, tools.desk);
   }
   void operator()(const LampChanged& event) const {
     if (!is_lamp(event.lamp)) return;
     Lamp lamp = tools.desk.now.lamps[event.lamp];
-    change(event.change, lamp);
+    change(event.change, tools.desk.read->scene.origin, lamp);
     do_edit(lamp_set(event.lamp, lamp, event.change.sky, tools.desk), tools.desk);
   }
   void operator()(const LampAdded& event) const { add_lamp(event, tools); }
@@ -290,7 +292,8 @@ void redo_step(EditTools& tools) { redo(tools.desk), tidy(tools); }
 
 void add_lamp(const LampAdded& added, EditTools& tools) {
   const size_t before = tools.desk.now.lamps.size();
-  do_edit(LampCreated{new_lamp(added, tools.bounds).light}, tools.desk);
+  do_edit(LampCreated{new_lamp(added, tools.bounds, tools.desk.read->scene.origin).light},
+          tools.desk);
   if (tools.desk.now.lamps.size() > before) select({.lamp = uint32_t(before)}, tools);
 }
 

@@ -260,7 +260,7 @@ TEST(EditTools, LampsAreDraggedTurnedAndDeleted) {
   b.drag(grip, grip - Vec3{2, 0, 0});
   expect_close(b.lamp().light.position, {-1, 2, 0}, 0.02f);
   LampAdded spot{Kind::spot, {}};
-  spot.change.to = Vec3{};
+  spot.change.to = DVec3{};
   add_lamp(spot, b.tools);
   b.key("r");
   const Vec3 corner = normalize(Vec3{1, 1, 0}) * b.reach_m();
@@ -374,6 +374,22 @@ TEST(Placement, ScalesAlongTheAxesOfTheObject) {
   expect_close(column(m, 0), column(turned, 0) * 2);
   expect_close(column(m, 2), column(turned, 2));
   expect_close(transform_point(m, middle), transform_point(turned, middle));
+}
+
+// Single precision has steps of 1 / 16 m at such places.
+TEST(EditTools, PlacesOfAPlayAreThoseOfTheFile) {
+  Bench b;
+  b.read->scene.origin = {1e6, 0, -2e6};
+  const auto events = parse_play(R"({"end": 0, "events": [
+    {"at": 0, "instance": "near", "to": [1000001.01, 2, -1999997.03]},
+    {"at": 0, "lamp": 0, "to": [999998.99, 1, -2000000]},
+    {"at": 0, "new_lamp": "point", "to": [1000000.03, 0, -2000000]}]})",
+                                 "edits.json");
+  ASSERT_TRUE(events) << events.error().message;
+  for (const TimedEvent& timed : events->events) b.take(timed.event);
+  expect_close(b.middle(), {1.01f, 2, 2.97f}, 1e-6f);
+  expect_close(b.lamp().light.position, {-1.01f, 1, 0}, 1e-6f);
+  expect_close(b.lamp(1).light.position, {0.03f, 0, 0}, 1e-6f);
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ Result<BackprojectionProbe> probe_sources(const SolutionView& view,
                                           const hierarchical::FacePoint& at, size_t most_sources,
                                           Progress& progress);
 
-/// Lines for a panel. `unit`: of E.
-std::vector<std::string> lines_of(const LightProbe& probe, const std::string& unit);
+/// Lines for a panel. `unit`: of E; `origin`: of the scene.
+std::vector<std::string> lines_of(const LightProbe& probe, const std::string& unit, DVec3 origin);
 std::vector<std::string> lines_of(const SeenSource& source, const std::string& unit);
 
 /// The point of a face's front that a probe asks for: on an edge the limit from inside.

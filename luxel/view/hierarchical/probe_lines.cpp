@@ -17,8 +17,8 @@ std::string source_text(const SourceShare& source, const std::string& unit) {
 
 }  // namespace
 
-std::vector<std::string> lines_of(const LightProbe& probe, const std::string& unit) {
-  const DVec3 p = probe.at.position;
+std::vector<std::string> lines_of(const LightProbe& probe, const std::string& unit, DVec3 origin) {
+  const DVec3 p = probe.at.position + origin;
   std::vector<std::string> out{fmt::format("{:.3f} {:.3f} {:.3f} on {}", p.x, p.y, p.z, probe.name),
                                "exact E " + text_of(probe.exact, unit),
                                "as shown " + text_of(probe.interpolated, unit),

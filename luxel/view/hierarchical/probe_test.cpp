@@ -54,8 +54,10 @@ TEST(LightProbe, SaysItInLines) {
   const auto grey = [](const h::FacePoint&) { return Rgb{0.5f, 0.5f, 0.5f}; };
   const auto probe = probe_light(lamp().view(), on_floor(1.2, 0.3), grey, progress);
   ASSERT_TRUE(probe);
-  const std::vector<std::string> lines = lines_of(*probe, "W/m^2");
+  const std::vector<std::string> lines = lines_of(*probe, "W/m^2", {});
   EXPECT_THAT(lines, Contains(HasSubstr("1.200 0.000 0.300")));
+  EXPECT_THAT(lines_of(*probe, "", {1e6, 0, -2e6}),
+              Contains(HasSubstr("1000001.200 0.000 -1999999.700")));
   EXPECT_THAT(lines, Contains(HasSubstr("100.0 %")));
   EXPECT_THAT(lines, Contains("as shown 0.5 W/m^2"));
 }

@@ -18,14 +18,14 @@ std::optional<h::FacePoint> point_of(const ToolPlace& at, const Walk& walk,
                                      const Examined& examined) {
   if (const auto* pixel = std::get_if<Vec2>(&at))
     return face_point_seen(examined.view, camera_of(walk), *pixel);
-  const h::FacePoint out = h::nearest_face_point(examined.view.solution.faces,
-                                                 to_double(std::get<Vec3>(at)), std::nullopt);
+  const h::FacePoint out = h::nearest_face_point(
+      examined.view.solution.faces, std::get<DVec3>(at) - examined.view.scene.origin, std::nullopt);
   return out.face == h::kNone ? std::nullopt : std::optional(out);
 }
 
 Nearness nearness_of(const ToolPlace& at, const Walk& walk, const Examined& examined) {
   if (const auto* pixel = std::get_if<Vec2>(&at)) return near_pixel(camera_of(walk), *pixel);
-  return near_place(to_double(std::get<Vec3>(at)),
+  return near_place(std::get<DVec3>(at) - examined.view.scene.origin,
                     kPlaceReach * double(examined.view.solution.diagonal_m));
 }
 

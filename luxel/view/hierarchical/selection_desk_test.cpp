@@ -78,14 +78,31 @@ TEST(SelectionDesk, AClickSelectsAndKeysStep) {
   EXPECT_TRUE(selected_box(examined, desk).empty());
 }
 
+TEST(SelectionDesk, PlacesAreThoseOfTheFile) {
+  const Walk walk = walk_above();
+  const Examined near = examined_lamp();
+  scene::Scene moved = near.view.scene;
+  moved.origin = {1e6, 0, -2e6};
+  const Examined examined{
+      SolutionView{moved, near.view.tracer, near.view.solution, near.view.mesh}, near.shown, {}, 2};
+  SelectionDesk desk;
+  const auto play = parse_play(R"({"end": 0, "events": [
+    {"at": 0, "use": "element", "place": [1000001.01, 0.1, -1999999.8]}]})",
+                               "tools.json");
+  ASSERT_TRUE(play) << play.error().message;
+  handle_selection(play->events.at(0).event, walk, examined, desk);
+  ASSERT_TRUE(desk.selected.has_element());
+  EXPECT_LE(length(desk.selected.at->position - DVec3{1.01, 0, 0.2}), 1e-9);
+}
+
 TEST(SelectionDesk, LinksComeByWhatTheyBring) {
   const Walk walk = walk_above();
   const Examined examined = examined_lamp();
   SelectionDesk desk;
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("select an element first"));
-  handle_selection(ToolUsed{InsideTool::element, ToolPlace(Vec3{1, 0.1f, 0.2f}), {}}, walk,
-                   examined, desk);
+  handle_selection(ToolUsed{InsideTool::element, ToolPlace(DVec3{1, 0.1, 0.2}), {}}, walk, examined,
+                   desk);
   ASSERT_TRUE(desk.selected.has_element());
   EXPECT_NEAR(desk.selected.at->position.y, 0, 1e-9);
   const Box3 of_element = selected_box(examined, desk);
@@ -253,7 +270,7 @@ TEST(Events, OfToolsAreRead) {
   ASSERT_TRUE(play) << play.error().message;
   ASSERT_EQ(play->events.size(), 6u);
   const auto& graph = std::get<ToolUsed>(play->events[2].event);
-  EXPECT_EQ(std::get<Vec3>(*graph.to).z, 6);
+  EXPECT_EQ(std::get<DVec3>(*graph.to).z, 6);
   EXPECT_TRUE(parse_play(
       R"({"end": 0, "events": [{"at": 0, "graph": {"difference": false, "height": 0.5}}]})", "p"));
   for (const char* wrong :

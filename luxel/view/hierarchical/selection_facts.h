@@ -82,10 +82,12 @@ std::string name_of_face(const SolutionView& view, uint32_t face);
 
 /// One number and the unit where all channels are alike, else three.
 std::string text_of(Rgb light, const std::string& unit);
-/// Sentences and numbers for a panel, one a line. `unit`: of E.
+/// Sentences and numbers for a panel, one a line. `unit`: of E; `origin`: of the scene.
 std::vector<std::string> lines_of(const NodeFacts& facts, const std::string& unit);
 std::vector<std::string> lines_of(const LinkFacts& facts, const std::string& unit);
-std::vector<std::string> lines_of(const TriangleFacts& facts, const std::string& unit);
-std::vector<std::string> lines_of(const DiscontinuityFacts& facts, const std::string& unit);
+std::vector<std::string> lines_of(const TriangleFacts& facts, const std::string& unit,
+                                  DVec3 origin);
+std::vector<std::string> lines_of(const DiscontinuityFacts& facts, const std::string& unit,
+                                  DVec3 origin);
 
 }  // namespace luxel::view

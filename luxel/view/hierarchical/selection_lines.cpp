@@ -29,9 +29,10 @@ const char* words_of_degree(int degree) {
   return degree == 1 ? "D1: its slope jumps" : "D2: its curvature jumps";
 }
 
-std::string generator_text(const Generator& part) {
-  return part.is_edge() ? fmt::format("edge {} to {}", place_text(part.from), place_text(part.to))
-                        : fmt::format("corner {}", place_text(part.from));
+std::string generator_text(const Generator& part, DVec3 origin) {
+  const std::string from = place_text(part.from + origin);
+  return part.is_edge() ? fmt::format("edge {} to {}", from, place_text(part.to + origin))
+                        : fmt::format("corner {}", from);
 }
 
 }  // namespace
@@ -85,10 +86,11 @@ std::vector<std::string> lines_of(const LinkFacts& f, const std::string& unit) {
   return out;
 }
 
-std::vector<std::string> lines_of(const TriangleFacts& f, const std::string& unit) {
+std::vector<std::string> lines_of(const TriangleFacts& f, const std::string& unit, DVec3 origin) {
   std::vector<std::string> out{fmt::format("{:.4g} m2 of element {}", f.area_m2, f.leaf)};
   for (size_t k = 0; k < 3; ++k)
-    out.push_back(fmt::format("{}: E {}", place_text(f.corner[k]), text_of(f.value[2 * k], unit)));
+    out.push_back(
+        fmt::format("{}: E {}", place_text(f.corner[k] + origin), text_of(f.value[2 * k], unit)));
   for (size_t k = 0; k < 3; ++k)
     out.push_back(fmt::format("middle of edge {}: E {}", k + 1, text_of(f.value[2 * k + 1], unit)));
   out.push_back(fmt::format("up to {:.3g} {} from linear", f.bend, unit));
@@ -96,16 +98,17 @@ std::vector<std::string> lines_of(const TriangleFacts& f, const std::string& uni
   return out;
 }
 
-std::vector<std::string> lines_of(const DiscontinuityFacts& f, const std::string& unit) {
+std::vector<std::string> lines_of(const DiscontinuityFacts& f, const std::string& unit,
+                                  DVec3 origin) {
   std::vector<std::string> out{words_of(f.line.kind), words_of_degree(f.degree)};
   out.push_back(fmt::format("{:.3g} m long", length(f.line.b - f.line.a)));
   const char* per = f.ranking == h::Ranking::slope ? " per m" : "";
   out.push_back(std::isinf(f.weight) ? std::string("weight: above all others")
                                      : fmt::format("weight {:.3g} {}{}", f.weight, unit, per));
   if (!f.source.empty()) out.push_back("source " + f.source);
-  if (f.at_source) out.push_back("  " + generator_text(*f.at_source));
+  if (f.at_source) out.push_back("  " + generator_text(*f.at_source, origin));
   if (!f.blocker.empty()) out.push_back("blocker " + f.blocker);
-  if (f.at_blocker) out.push_back("  " + generator_text(*f.at_blocker));
+  if (f.at_blocker) out.push_back("  " + generator_text(*f.at_blocker, origin));
   return out;
 }
 

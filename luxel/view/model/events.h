@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "luxel/base/result.h"
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 #include "luxel/pipeline/settings/sky_setting.h"
 #include "luxel/scene/scene.h"
 #include "luxel/view/frame.h"
@@ -65,7 +65,7 @@ struct SkyAsked {
 };
 /// What of a lamp becomes otherwise; the rest stays.
 struct LampChange {
-  std::optional<Vec3> to;         ///< place [m]
+  std::optional<DVec3> to;        ///< place in the world of the file [m]
   std::optional<Vec3> direction;  ///< in which its light travels; not 0
   std::optional<Rgb> intensity;   ///< scene::PunctualLight::intensity
   std::optional<bool> is_on;
@@ -150,7 +150,7 @@ struct MaterialSelected {
 /// It stands otherwise; what is not said stays.
 struct InstanceChanged {
   std::string instance;            ///< as InstanceSelected has it
-  std::optional<Vec3> to;          ///< where its middle is [m]
+  std::optional<DVec3> to;         ///< where its middle is in the world of the file [m]
   std::optional<Vec3> angles_deg;  ///< Placement::angles_deg
   std::optional<Vec3> scale;
 };

@@ -6,8 +6,9 @@
 
 namespace luxel::view {
 
-void change(const LampChange& by, Lamp& lamp);
+/// `origin`: of the scene.
+void change(const LampChange& by, DVec3 origin, Lamp& lamp);
 /// A lamp of its own name; without a place of its own it is in the middle of the scene's bounds.
-Lamp new_lamp(const LampAdded& added, const Box3& bounds);
+Lamp new_lamp(const LampAdded& added, const Box3& bounds, DVec3 origin);
 
 }  // namespace luxel::view

@@ -32,6 +32,13 @@ class Members {
     for (const float x : v) is_fine_ &= std::abs(x) <= scene::kBrightest && x >= least;
     to = Vec3{v[0], v[1], v[2]};
   }
+  /// A place.
+  void read(const char* key, std::optional<DVec3>& to) {
+    if (!has(key)) return;
+    const auto v = from_[key].get<std::array<double, 3>>();
+    for (const double x : v) is_fine_ &= std::abs(x) <= double(scene::kBrightest);
+    to = DVec3{v[0], v[1], v[2]};
+  }
   /// A number from 0 to `most`.
   void read(const char* key, float most, std::optional<float>& to) {
     if (!has(key)) return;
@@ -53,7 +60,7 @@ constexpr float kAny = -scene::kBrightest;
 std::optional<LampChange> lamp_change_of(const json& from) {
   LampChange out;
   Members members(from);
-  members.read("to", kAny, out.to), members.read("direction", kAny, out.direction);
+  members.read("to", out.to), members.read("direction", kAny, out.direction);
   members.read("intensity", 0, out.intensity);
   if (members.has("on")) out.is_on = from["on"].get<bool>();
   members.read("cone_deg", 90, out.cone_deg),
@@ -104,7 +111,7 @@ std::optional<Event> instance_event_of(const json& from) {
   InstanceChanged out;
   out.instance = name_of_instance(from["instance"]);
   Members members(from);
-  members.read("to", kAny, out.to), members.read("angles_deg", kAny, out.angles_deg);
+  members.read("to", out.to), members.read("angles_deg", kAny, out.angles_deg);
   members.read("scale", kAny, out.scale);
   return members.all_fine() ? std::optional<Event>(out) : std::nullopt;
 }

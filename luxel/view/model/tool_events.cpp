@@ -10,9 +10,9 @@ using nlohmann::json;
 
 /// None where one is not held.
 template <size_t N>
-std::optional<std::array<float, N>> held_numbers(const json& from) {
-  const auto out = from.get<std::array<float, N>>();
-  const auto is_held = [](float x) { return std::isfinite(x); };
+std::optional<std::array<double, N>> held_numbers(const json& from) {
+  const auto out = from.get<std::array<double, N>>();
+  const auto is_held = [](double x) { return std::isfinite(float(x)); };
   return std::all_of(out.begin(), out.end(), is_held) ? std::optional(out) : std::nullopt;
 }
 
@@ -22,13 +22,13 @@ std::optional<ToolPlace> tool_place_of(const json& from, const std::string& befo
   if (const std::string pixel = before + "pixel"; from.contains(pixel)) {
     ++known;
     const auto at = held_numbers<2>(from[pixel]);
-    return at ? std::optional(ToolPlace(Vec2{(*at)[0], (*at)[1]})) : std::nullopt;
+    return at ? std::optional(ToolPlace(Vec2{float((*at)[0]), float((*at)[1])})) : std::nullopt;
   }
   const std::string place = before + "place";
   if (!from.contains(place)) return std::nullopt;
   ++known;
   const auto at = held_numbers<3>(from[place]);
-  return at ? std::optional(ToolPlace(Vec3{(*at)[0], (*at)[1], (*at)[2]})) : std::nullopt;
+  return at ? std::optional(ToolPlace(DVec3{(*at)[0], (*at)[1], (*at)[2]})) : std::nullopt;
 }
 
 std::optional<InsideTool> tool_named(const std::string& name) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include "luxel/base/vec.h"
+#include "luxel/base/vec_double.h"
 
 namespace luxel::view {
 
@@ -35,8 +35,9 @@ inline constexpr std::array<InsideToolName, 8> kInsideTools{{
     {"irradiance", "probe irradiance"},
     {"backprojection", "probe backprojections"},
 }};
-/// Where a tool is used: a pixel of the picture, or the place of a surface nearest to one in space.
-using ToolPlace = std::variant<Vec2, Vec3>;
+/// Where a tool is used: a pixel of the picture, or the place of a surface nearest to one in the
+/// world of the file.
+using ToolPlace = std::variant<Vec2, DVec3>;
 /// Clicks use another tool.
 struct ToolChanged {
   InsideTool tool = InsideTool::none;

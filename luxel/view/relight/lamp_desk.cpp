@@ -42,9 +42,9 @@ void set_glow_of(const GlowChanged& changed, LampDesk& desk) {
 
 }  // namespace
 
-LampDesk begin_desk(const Lamps& lamps, const Box3& bounds) {
+LampDesk begin_desk(const Lamps& lamps, const Box3& bounds, DVec3 origin) {
   LampDesk out;
-  out.lamps = lamps, out.bounds = bounds;
+  out.lamps = lamps, out.bounds = bounds, out.origin = origin;
   return out;
 }
 
@@ -70,12 +70,12 @@ bool handle_lamps(const Event& event, const Walk& walk, LampDesk& desk) {
 
 void change_lamp(const LampChanged& changed, LampDesk& desk) {
   if (changed.lamp >= desk.lamps.lamps.size()) return;
-  change(changed.change, desk.lamps.lamps[changed.lamp]);
+  change(changed.change, desk.origin, desk.lamps.lamps[changed.lamp]);
   ++desk.changes;
 }
 
 void add_lamp(const LampAdded& added, LampDesk& desk) {
-  desk.lamps.lamps.push_back(new_lamp(added, desk.bounds));
+  desk.lamps.lamps.push_back(new_lamp(added, desk.bounds, desk.origin));
   desk.selected = uint32_t(desk.lamps.lamps.size() - 1);
   ++desk.changes;
 }

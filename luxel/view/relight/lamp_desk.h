@@ -13,7 +13,8 @@ namespace luxel::view {
 /// The lamps, and what the user is doing with them.
 struct LampDesk {
   Lamps lamps;
-  Box3 bounds;  ///< of the scene [m]
+  Box3 bounds;     ///< of the scene [m]
+  DVec3 origin{};  ///< scene::Scene::origin
   std::optional<uint32_t> selected;
   std::optional<int> axis;  ///< 0 to 2: lamps move along x, y, z alone
   bool has_marks = true;    ///< lamps are marked
@@ -24,7 +25,7 @@ struct LampDesk {
   Vec2 pointer_from{};  ///< and the pointer
 };
 
-LampDesk begin_desk(const Lamps& lamps, const Box3& bounds);
+LampDesk begin_desk(const Lamps& lamps, const Box3& bounds, DVec3 origin = {});
 
 /// Where a handle is [m].
 Vec3 place_of(const Handle& handle, const LampDesk& desk);

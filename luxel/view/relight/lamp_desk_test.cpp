@@ -168,6 +168,22 @@ TEST(LampDesk, PlaysLamps) {
   EXPECT_EQ(glowing(t.desk.lamps)[0], (Rgb{0, 0, 9}));
 }
 
+// Single precision has steps of 1 / 16 m at such places.
+TEST(LampDesk, PlacesOfAPlayAreThoseOfTheFile) {
+  Table t;
+  t.desk.origin = {1e6, 0, -2e6};
+  const auto events = parse_play(R"({"end": 1, "events": [
+    {"at": 0, "lamp": 0, "to": [1000001.01, 2, -1999997.03]},
+    {"at": 1, "new_lamp": "point", "to": [999998.99, 1, -2000000]}]})",
+                                 "lamps.json");
+  ASSERT_TRUE(events) << events.error().message;
+  play(
+      *events, [&](const Event& event) { t.take(event); },
+      [&](double seconds) { pass(seconds, t.walk); });
+  EXPECT_LE(length(t.light(0).position - Vec3{1.01f, 2, 2.97f}), 1e-6f);
+  EXPECT_LE(length(t.light(3).position - Vec3{-1.01f, 1, 0}), 1e-6f);
+}
+
 TEST(LampDesk, SaysWhatOfAPlayIsWrong) {
   const auto error = [](const std::string& event) {
     const auto play = parse_play(R"({"end": 1, "events": [)" + event + "]}", "lamps.json");

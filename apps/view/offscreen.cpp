@@ -123,6 +123,7 @@ Status draw_offscreen(gpu::Commands& commands, Subject& subject,
   if (beside) first.beside.emplace();
   view::Walk walk =
       view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
+  walk.origin = read.scene.origin;
   if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
   LUXEL_TRY_STATUS(pass_light(0, commands, &walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));

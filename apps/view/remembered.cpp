@@ -19,8 +19,9 @@ Remembered recall(const std::filesystem::path& file, const std::string& subject)
 }
 
 void begin_as_left(const Remembered& remembered, view::Walk& walk) {
-  walk.shown.camera = view::camera_to_begin(remembered.subject, walk.first.camera);
-  walk.bookmarks = remembered.subject.bookmarks;
+  const view::SubjectHabits subject = view::moved_to(walk.origin, remembered.subject);
+  walk.shown.camera = view::camera_to_begin(subject, walk.first.camera);
+  walk.bookmarks = subject.bookmarks;
 }
 
 Status keep(const Remembered& remembered, const view::Walk& walk, const WindowLeft& window) {
@@ -30,7 +31,7 @@ Status keep(const Remembered& remembered, const view::Walk& walk, const WindowLe
   habits.panel = {window.layout.place, window.layout.open, window.layout.closed};
   if (std::ranges::min(window.size) >= view::kSmallestWindow) habits.window = window.size;
   view::remember({remembered.subject.path, view::LastView{walk.first.camera, walk.shown.camera},
-                  walk.bookmarks},
+                  walk.bookmarks, walk.origin},
                  habits);
   return view::write_habits(habits, remembered.file);
 }

@@ -88,13 +88,16 @@ constexpr double kReport_s = 0.5;
 void go_on_as(const view::Walk& before, view::Walk& walk) {
   const float stops = before.shown.exposure / before.first.exposure;
   const float exposure = walk.first.exposure * stops;
-  view::SubjectHabits known;
-  known.view = view::LastView{before.first.camera, before.shown.camera};
+  view::SubjectHabits known{.path = {},
+                            .view = view::LastView{before.first.camera, before.shown.camera},
+                            .bookmarks = before.bookmarks,
+                            .origin = before.origin};
+  known = view::moved_to(walk.origin, std::move(known));
   const scene::Camera camera = view::camera_to_begin(known, walk.first.camera);
-  if (camera.world_from_camera == before.shown.camera.world_from_camera)
-    walk.target = before.target;
+  if (camera.world_from_camera == known.view->last.world_from_camera)
+    walk.target = before.target + to_float(before.origin - walk.origin);
   walk.shown = before.shown, walk.shown.camera = camera, walk.shown.exposure = exposure;
-  walk.bookmarks = before.bookmarks, walk.turns = before.turns;
+  walk.bookmarks = known.bookmarks, walk.turns = before.turns;
   if (!walk.first.beside) walk.shown.beside.reset();
 }
 
@@ -105,6 +108,7 @@ void begin(const view::ReadScene& read, Session& s) {
   if (!s.walk) {
     s.walk =
         view::begin_walk(read.first, scene::world_bounds(read.scene), width, height, s.place_seen);
+    s.walk->origin = read.scene.origin;
     begin_as_left(s.remembered, *s.walk);
     if (s.carried) go_on_as(*s.carried, *s.walk);
     s.carried.reset();

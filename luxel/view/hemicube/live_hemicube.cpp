@@ -25,11 +25,13 @@ constexpr int kGlimpseWidth = 128, kGlimpseHeight = 96;
 Result<scene::Scene> read_models(std::span<const std::filesystem::path> models,
                                  const pipeline::BakeSettings& settings, Progress& progress) {
   std::vector<scene::Scene> scenes;
+  import::ImportParams reading = settings.reading;
   progress.begin("import", models.size());
   for (const std::filesystem::path& model : models) {
     LUXEL_TRY(import::Imported imported,
-              import::import_scene(model, settings.reading, settings.max_memory_bytes));
+              import::import_scene(model, reading, settings.max_memory_bytes));
     scenes.push_back(std::move(imported.scene));
+    reading.origin = scenes[0].origin;
     progress.advance(1);
     LUXEL_TRY_STATUS(stopped(progress));
   }

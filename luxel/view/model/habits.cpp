@@ -6,6 +6,7 @@
 
 #include "luxel/base/file.h"
 #include "luxel/base/short_message.h"
+#include "luxel/scene/held_range.h"
 
 namespace luxel::view {
 namespace {
@@ -42,6 +43,8 @@ json json_of(const SubjectHabits& subject) {
   json out{{"path", subject.path}, {"bookmarks", json::object()}};
   if (subject.view && is_camera(subject.view->first) && is_camera(subject.view->last))
     out["view"] = {{"first", json_of(subject.view->first)}, {"last", json_of(subject.view->last)}};
+  const DVec3 o = subject.origin;
+  if (o != DVec3{}) out["origin"] = {o.x, o.y, o.z};
   for (size_t i = 0; i < subject.bookmarks.size(); ++i) {
     const auto& bookmark = subject.bookmarks[i];
     if (bookmark && is_bookmark(*bookmark))
@@ -81,6 +84,11 @@ std::optional<SubjectHabits> subject_of(const json& from) {
                last = camera_of(from["view"].at("last"));
     if (!first || !last) return std::nullopt;
     out.view = LastView{*first, *last};
+  }
+  if (from.contains("origin")) {
+    const auto o = from["origin"].get<std::array<double, 3>>();
+    out.origin = {o[0], o[1], o[2]};
+    if (!scene::is_held(to_float(out.origin))) return std::nullopt;
   }
   for (const auto& item : from.at("bookmarks").items()) {
     const auto number = bookmark_key("alt+" + item.key());
@@ -187,6 +195,21 @@ void remember(SubjectHabits subject, Habits& habits) {
   std::erase_if(habits.recent, [&](const auto& known) { return known.path == subject.path; });
   habits.recent.insert(habits.recent.begin(), std::move(subject));
   if (habits.recent.size() > kMostRecent) habits.recent.resize(kMostRecent);
+}
+
+SubjectHabits moved_to(DVec3 origin, SubjectHabits subject) {
+  const DVec3 by = subject.origin - origin;
+  const auto move = [&](scene::Camera& camera) {
+    Mat34& m = camera.world_from_camera;
+    const DVec3 at = to_double(column(m, 3)) + by;
+    m.row[0][3] = float(at.x), m.row[1][3] = float(at.y), m.row[2][3] = float(at.z);
+  };
+  if (by == DVec3{}) return subject;
+  if (subject.view) move(subject.view->first), move(subject.view->last);
+  for (std::optional<Bookmark>& bookmark : subject.bookmarks)
+    if (bookmark) move(bookmark->camera);
+  subject.origin = origin;
+  return subject;
 }
 
 scene::Camera camera_to_begin(const SubjectHabits& subject, const scene::Camera& first) {

@@ -23,6 +23,7 @@ struct SubjectHabits {
   std::string path;  ///< absolute
   std::optional<LastView> view;
   Bookmarks bookmarks;
+  DVec3 origin{};  ///< scene::Scene::origin that its cameras are relative to
 };
 
 /// How the panel lies. ImGui's numbers stand for its headers.
@@ -59,6 +60,9 @@ std::string json_of(const Habits& habits);
 SubjectHabits subject_of(const Habits& habits, const std::string& path);
 /// The subject becomes the newest.
 void remember(SubjectHabits subject, Habits& habits);
+
+/// Its cameras become relative to another origin.
+SubjectHabits moved_to(DVec3 origin, SubjectHabits subject);
 
 /// The camera to begin with: the last, if looking would begin with the same view as then. Another
 /// first view is one that the user has asked for since.

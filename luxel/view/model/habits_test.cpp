@@ -84,6 +84,29 @@ TEST(Habits, BeginWithTheLastViewWhereTheFirstIsTheSame) {
   expect_same(camera_to_begin({}, some_camera(1)), some_camera(1));
 }
 
+// Where a scene's origin has become another one, cameras stay where they are in the world.
+TEST(Habits, AreMovedToAnotherOrigin) {
+  SubjectHabits subject;
+  subject.path = "/far", subject.origin = {5403216.5, 0, -64};
+  scene::Camera camera;
+  camera.world_from_camera = translation({0.25f, 1, 8});
+  subject.view = LastView{camera, camera};
+  subject.bookmarks[1] = Bookmark{camera, 1, Show::light};
+  Habits habits;
+  remember(subject, habits);
+  const auto read = parse_habits(json_of(habits), "view.json");
+  ASSERT_TRUE(read) << read.error().message;
+  const SubjectHabits back = subject_of(*read, "/far");
+  EXPECT_EQ(back.origin, subject.origin);
+  expect_same(moved_to(subject.origin, back).view->last, camera);
+  const SubjectHabits moved = moved_to({5403208, 0, -32}, back);
+  EXPECT_EQ(moved.origin, (DVec3{5403208, 0, -32}));
+  camera.world_from_camera = translation({8.75f, 1, -24});
+  expect_same(moved.view->first, camera), expect_same(moved.view->last, camera);
+  ASSERT_TRUE(moved.bookmarks[1]);
+  expect_same(moved.bookmarks[1]->camera, camera);
+}
+
 TEST(Habits, LeaveOutWhatCannotBeReadAgain) {
   Habits habits;
   remember(some_subject("/a"), habits);

@@ -34,6 +34,7 @@ struct Walk {
   Frame shown;
   Frame first;      ///< what it began with
   Box3 bounds;      ///< of the scene [m]
+  DVec3 origin{};   ///< scene::Scene::origin
   Box3 selected{};  ///< what is selected of it, which F shows; empty: nothing
   int width = 960, height = 720;
 

@@ -209,6 +209,30 @@ void camera_apart(GltfTree& tree, size_t node) {
   add_child(tree, node, std::move(child));
 }
 
+Eigen::Affine3d in_world(const Eigen::Affine3d& place, DVec3 origin) {
+  if (origin == DVec3{}) return place;  // a sum with 0 would make 0 of -0
+  return Eigen::Translation3d(origin.x, origin.y, origin.z) * place;
+}
+
+/// World of the file from the coordinates that the file has of an instance's mesh.
+Eigen::Affine3d place_in_file(const GltfEdits& edits, uint32_t instance, const Mat34& world) {
+  const Eigen::Affine3d out = in_world(affine(world), edits.origin);
+  if (edits.object_origin.empty()) return out;
+  const DVec3 o = edits.object_origin[instance];
+  return out * Eigen::Translation3d(-o.x, -o.y, -o.z);
+}
+
+/// Where a node is wanted. What only moves far from the origin keeps the digits that single
+/// precision has not.
+Eigen::Affine3d moved(const GltfEdits& edits, const GltfEdits::Placed& placed,
+                      const Eigen::Affine3d& was) {
+  const Eigen::Affine3d before = affine(edits.world_from_object[placed.instance]),
+                        now = affine(placed.world_from_object);
+  if (edits.origin == DVec3{} || now.linear() != before.linear())
+    return place_in_file(edits, placed.instance, placed.world_from_object);
+  return Eigen::Translation3d(now.translation() - before.translation()) * was;
+}
+
 /// Copies of one node become nodes below it, each at its place.
 void part_copies(const GltfEdits& edits, const std::vector<Mat34>& world, size_t node,
                  GltfTree& tree) {
@@ -220,7 +244,7 @@ void part_copies(const GltfEdits& edits, const std::vector<Mat34>& world, size_t
   // Each comes before those that are there: the last copy first.
   for (size_t i = world.size(); i-- > 0;)
     if (edits.node_of_instance[i] == node)
-      tree.wanted[add_child(tree, node, child)] = affine(world[i]);
+      tree.wanted[add_child(tree, node, child)] = place_in_file(edits, uint32_t(i), world[i]);
 }
 
 /// Errors: one hangs on the joints of a skin, which alone say where it is.
@@ -245,7 +269,7 @@ Status move_instances(const GltfEdits& edits, const std::string& name, GltfTree&
     if (tree.document["nodes"][node].contains("camera")) camera_apart(tree, node);
     if (has_light(tree.document["nodes"][node]))
       light_nodes[uint32_t(node)] = light_apart(tree, node);
-    tree.wanted[node] = affine(placed.world_from_object);
+    tree.wanted[node] = moved(edits, placed, tree.was[node]);
   }
   return {};
 }
@@ -325,13 +349,13 @@ void edit_lights(const GltfEdits& edits, const std::map<uint32_t, size_t>& apart
       continue;
     const OrderedJson& from = tree.document["nodes"][node];
     if (from.contains("mesh") || from.contains("camera")) node = light_apart(tree, node);
-    tree.wanted[node] = affine(place_of(edit.now));
+    tree.wanted[node] = in_world(affine(place_of(edit.now)), edits.origin);
   }
   for (const uint32_t light : edits.deleted_lights)
     drop_extension(tree.document["nodes"].at(node_of(light)), kLights);
 }
 
-void add_light(const scene::PunctualLight& light, GltfTree& tree) {
+void add_light(const scene::PunctualLight& light, DVec3 origin, GltfTree& tree) {
   OrderedJson out = {{"type", std::string(scene::name_of(light.kind))}};
   if (!light.name.empty()) out["name"] = light.name;
   set_intensity(light.intensity, out);
@@ -343,7 +367,7 @@ void add_light(const scene::PunctualLight& light, GltfTree& tree) {
   OrderedJson node = OrderedJson::object();
   if (!light.name.empty()) node["name"] = light.name;
   node["extensions"][kLights]["light"] = list.size() - 1;
-  tree.wanted[add_root(tree, std::move(node))] = affine(place_of(light));
+  tree.wanted[add_root(tree, std::move(node))] = in_world(affine(place_of(light)), origin);
 }
 
 }  // namespace
@@ -359,7 +383,7 @@ Result<std::vector<std::byte>> edited_gltf(std::span<const std::byte> bytes,
     std::map<uint32_t, size_t> lights_apart;
     LUXEL_TRY_STATUS(move_instances(edits, name, tree, lights_apart));
     edit_lights(edits, lights_apart, tree);
-    for (const scene::PunctualLight& light : edits.new_lights) add_light(light, tree);
+    for (const scene::PunctualLight& light : edits.new_lights) add_light(light, edits.origin, tree);
     write_places(tree);
     edit_materials(edits, file->document);
     return put_together(*file, name);

@@ -22,6 +22,8 @@ struct GltfEdits {
   };
   std::vector<Placed> placed;            ///< instances that stand otherwise
   std::vector<Mat34> world_from_object;  ///< of each instance as it was read
+  DVec3 origin{};                        ///< scene::Scene::origin: coordinates here are less that
+  std::vector<DVec3> object_origin;      ///< import::Imported has them
   struct Light {
     uint32_t light = 0;
     scene::PunctualLight before, now;  ///< what is the same in both is left as it is

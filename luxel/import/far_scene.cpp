@@ -89,6 +89,8 @@ std::vector<std::string> move_towards_origin(const ExactPlaces& exact,
   std::vector<std::string> told;
   std::vector<DVec3> shifts(scene.meshes.size());
   move_meshes(size_of(box), file, scene, shifts, told);
+  for (const scene::Instance& instance : scene.instances)
+    imported.object_origin.push_back(shifts[instance.mesh]);
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     Mat34& m = scene.instances[i].world_from_object;
     const DVec3 at = transform_point(exact.instances[i], shifts[scene.instances[i].mesh]) - origin;

@@ -54,16 +54,21 @@ Result<Mat34> world_from_file(const SourceFile& source, const ImportParams& para
   return Mat34{{{{unit, 0, 0, 0}, {0, 0, unit, 0}, {0, -unit, 0, 0}}}};
 }
 
-/// What of the instances that were read validation has kept: it drops some, and changes none.
+/// Instances that validation has kept keep what is known of them: it drops some, and changes none.
 void keep_nodes(std::span<const scene::Instance> read, Imported& imported) {
-  if (imported.node_of_instance.empty()) return;
   const std::vector<scene::Instance>& kept = imported.scene.instances;
-  std::vector<uint32_t> out;
-  for (size_t i = 0; i < read.size() && out.size() < kept.size(); ++i)
-    if (kept[out.size()].world_from_object == read[i].world_from_object &&
-        kept[out.size()].mesh == read[i].mesh)
-      out.push_back(imported.node_of_instance[i]);
-  imported.node_of_instance = std::move(out);
+  size_t count = 0;
+  for (size_t i = 0; i < read.size() && count < kept.size(); ++i) {
+    if (kept[count].world_from_object != read[i].world_from_object ||
+        kept[count].mesh != read[i].mesh)
+      continue;
+    if (!imported.node_of_instance.empty())
+      imported.node_of_instance[count] = imported.node_of_instance[i];
+    if (!imported.object_origin.empty()) imported.object_origin[count] = imported.object_origin[i];
+    ++count;
+  }
+  if (!imported.node_of_instance.empty()) imported.node_of_instance.resize(count);
+  if (!imported.object_origin.empty()) imported.object_origin.resize(count);
 }
 
 /// Bytes that are no UTF-8, as old programs write them, become the replacement character: names end

@@ -21,6 +21,8 @@ struct Imported {
   std::string about_lost_lights;
   /// The node of a glTF file that each instance and each light comes from. Empty for other files.
   std::vector<uint32_t> node_of_instance, node_of_light;
+  /// Taken off the coordinates of each instance's mesh (far_scene.h); empty: nothing.
+  std::vector<DVec3> object_origin;
   bool is_smoothed = false;  ///< by the smoothing groups of an .obj file
 };
 

@@ -31,6 +31,7 @@ export_::GltfEdits edits_of(const SceneToSave& to_save, const import::Imported& 
   const SceneNow& now = to_save.now;
   export_::GltfEdits out;
   out.node_of_instance = file.node_of_instance, out.node_of_light = file.node_of_light;
+  out.origin = read.origin, out.object_origin = file.object_origin;
   for (uint32_t i = 0; i < read.instances.size(); ++i) {
     const Mat34& before = read.instances[i].world_from_object;
     out.world_from_object.push_back(before);
@@ -100,8 +101,10 @@ bool is_as_read(const scene::Scene& file, const scene::Scene& read) {
 
 Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
   const pipeline::BakeSettings& settings = to_save.settings;
+  import::ImportParams reading = settings.reading;
+  reading.origin = to_save.read->scene.origin;
   LUXEL_TRY(import::Imported file,
-            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
+            import::import_scene(settings.scene, reading, settings.max_memory_bytes));
   if (!is_as_read(file.scene, to_save.read->scene))
     return fail(ErrorCode::bad_input,
                 "{} has changed since it was read, so the edited scene cannot be saved; restore "

@@ -64,7 +64,7 @@ class SaveScene : public ::testing::Test {
   EditDesk open(const std::string& name, std::span<const std::byte> bytes) {
     settings_.scene = folder_ / name, settings_.output = folder_ / "out";
     EXPECT_TRUE(write_file_atomically(settings_.scene, bytes));
-    auto imported = import::import_scene(settings_.scene);
+    auto imported = import::import_scene(settings_.scene, {.origin = origin_});
     EXPECT_TRUE(imported) << imported.error().message;
     auto read = std::make_shared<ReadScene>();
     read->scene = std::move(imported->scene);
@@ -81,7 +81,7 @@ class SaveScene : public ::testing::Test {
     return *saved;
   }
   scene::Scene read_back(const EditDesk& desk) {
-    auto imported = import::import_scene(save(desk));
+    auto imported = import::import_scene(save(desk), {.origin = origin_});
     EXPECT_TRUE(imported) << imported.error().message;
     return std::move(imported->scene);
   }
@@ -89,6 +89,7 @@ class SaveScene : public ::testing::Test {
   testing_support::ScratchFolder scratch_;
   std::filesystem::path folder_ = scratch_.path;
   pipeline::BakeSettings settings_;
+  std::optional<DVec3> origin_;  ///< of what is read
 };
 
 void expect_same(const scene::PunctualLight& a, const scene::PunctualLight& b) {
@@ -293,6 +294,112 @@ TEST_F(SaveScene, LightOfOptionsIsSavedWhereItWasEdited) {
   const scene::Scene saved = read_back(desk);
   ASSERT_EQ(saved.lights.size(), 4u);
   EXPECT_EQ(saved.lights[3].position, (Vec3{1, 2, 3}));
+}
+
+/// Where a file's node is, in double precision.
+DMat34 world_of(const Json& file, size_t node) {
+  const auto local_of = [](const Json& n) {
+    const auto t = n.value("translation", std::array<double, 3>{});
+    DMat34 out = moved_by({t[0], t[1], t[2]});
+    if (n.contains("matrix"))
+      for (size_t i = 0; i < 3; ++i)
+        for (size_t j = 0; j < 4; ++j) out.row[i][j] = n["matrix"][4 * j + i].get<double>();
+    // The only turn in these files, by a quarter about y, and the only scale.
+    constexpr double s = 2;
+    if (n.contains("rotation")) out = out * DMat34{{{{0, 0, s, 0}, {0, s, 0, 0}, {-s, 0, 0, 0}}}};
+    return out;
+  };
+  DMat34 out = local_of(file["nodes"][node]);
+  for (size_t n = 0; n < file["nodes"].size(); ++n) {
+    const Json children = file["nodes"][n].value("children", Json::array());
+    if (std::ranges::find(children, Json(node)) != children.end()) return world_of(file, n) * out;
+  }
+  return out;
+}
+
+DVec3 place_of(const Json& file, size_t node) { return translation_of(world_of(file, node)); }
+
+void expect_near(DVec3 a, DVec3 b) {
+  EXPECT_LE(length(a - b), 1e-6) << fmt::format("({}, {}, {}) for ({}, {}, {})", a.x, a.y, a.z, b.x,
+                                                b.y, b.z);
+}
+
+/// The hall, in survey coordinates.
+class SaveFarScene : public SaveScene {
+ protected:
+  void SetUp() override {
+    origin_ = DVec3{512344, 88, -5403216};
+    const auto replace = [&](const std::string& what, const std::string& by) {
+      file_.replace(file_.find(what), what.size(), by);
+    };
+    replace("[1, 0, 2]", "[512345.678, 87.5, -5403210.123]");
+    replace("[0, 3, 0]", "[512344.3, 90.5, -5403211.1]");
+    replace("[2, 3, 0]", "[512346.3, 90.5, -5403211.1]");
+    replace("[0, 0, -5]", "[512344.3, 87.5, -5403216.7]");
+    before_ = Json::parse(file_);
+    open_hall();  // for its bytes
+    desk_ = open("far.gltf", std::as_bytes(std::span(file_)));
+    ASSERT_EQ(desk_.read->scene.origin, *origin_);
+  }
+
+  std::string file_ = kHall;
+  Json before_;
+  EditDesk desk_;
+};
+
+TEST_F(SaveFarScene, WhatIsMovedByOneMetreIsSoInTheFile) {
+  move(desk_, instance_of(desk_, "table"), translation({1, 0, 0}));
+  const Json saved = json_of(save(desk_));
+  const DMat34 now = world_of(saved, 0), was = world_of(before_, 0);
+  expect_near(translation_of(now), {512346.678, 87.5, -5403210.123});
+  EXPECT_EQ(translation_of(now).z, -5403210.123) << "the file's own digits";
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 3; ++j) EXPECT_NEAR(now.row[i][j], was.row[i][j], 1e-7);
+  for (const size_t child : {1u, 2u}) expect_near(place_of(saved, child), place_of(before_, child));
+  for (const size_t other : {3u, 4u, 5u})
+    EXPECT_EQ(saved["nodes"][other].dump(), before_["nodes"][other].dump());
+  expect_same(read_back(desk_), desk_);
+}
+
+TEST_F(SaveFarScene, CopiesAndLampsStandInTheWorldOfTheFile) {
+  move(desk_, instance_of(desk_, "row") + 1, translation({0, 0, 1}));
+  Lamp a = desk_.now.lamps[1];
+  a.light.position = a.light.position + Vec3{-1, 0, 0};
+  do_edit(LampSet{1, a.light}, desk_);
+  scene::PunctualLight more;
+  more.position = {1.5f, 2, -0.25f};
+  do_edit(LampCreated{more}, desk_);
+  const Json saved = json_of(save(desk_));
+  const size_t first = before_["nodes"].size();  // of the copies, the last of which comes first
+  expect_near(place_of(saved, first + 2), {512343.3, 87.5, -5403216.7});
+  expect_near(place_of(saved, first + 1), {512344.3, 87.5, -5403215.7});
+  expect_near(place_of(saved, 3), {512343.3, 90.5, -5403211.1});
+  expect_near(place_of(saved, saved["nodes"].size() - 1), {512345.5, 90, -5403216.25});
+  for (const size_t other : {0u, 1u, 2u, 4u})
+    EXPECT_EQ(saved["nodes"][other].dump(), before_["nodes"][other].dump());
+  expect_same(read_back(desk_), desk_);
+}
+
+// Turned, scaled, and with meshes whose own vertices lie far away.
+TEST_F(SaveFarScene, IsReadBackWhereItWasPut) {
+  move(desk_, instance_of(desk_, "table"), turned_about({1, 0, 1}, {0.6f, 0.8f, 0}, 0.7f));
+  move(desk_, instance_of(desk_, "cup"), scaled_about({}, {}, {1, 2, 1}));
+  expect_same(read_back(desk_), desk_);
+  origin_ = DVec3{65536, 0, 0};
+  constexpr float kFarBytes[] = {65536, 0, 0, 65537, 0, 0, 65536, 1, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0};
+  ASSERT_TRUE(
+      write_file_atomically(folder_ / "some bytes.bin", std::as_bytes(std::span(kFarBytes))));
+  Json file = before_;
+  file["nodes"] = Json::array({{{"name", "wall"}, {"mesh", 0}}, before_["nodes"][5]});
+  file["nodes"][1].erase("translation");
+  file["scenes"][0]["nodes"] = {0, 1};
+  const std::string text = file.dump();
+  EditDesk desk = open("vertices.gltf", std::as_bytes(std::span(text)));
+  ASSERT_EQ(desk.read->scene.instances.size(), 4u);
+  EXPECT_LE(scene::world_bounds(desk.read->scene).diagonal(), 4);
+  move(desk, 0, turned_about({0.5f, 0, 0}, {0, 1, 0}, 1.5f));
+  move(desk, instance_of(desk, "row") + 2, turned_about({1, 0, 0}, {0, 0, 1}, 0.5f));
+  expect_same(read_back(desk), desk);
 }
 
 TEST_F(SaveScene, AFileThatHasChangedIsNotSaved) {

@@ -165,7 +165,8 @@ Image8 draw_floor(const scene::Scene& scene, const LuxSettings& s, const LuxRepo
   const RoomLight& all = view.lit.all;
   image::draw_text(out, kFrame, 10, 1, kInkColor,
                    fmt::format("floor at y = {} m, plane {} m above it, {} points",
-                               image::text_of_value(std::round(view.lit.floor.y * 1000) / 1000),
+                               image::text_of_value(
+                                   std::round((view.lit.floor.y + report.origin.y) * 1000) / 1000),
                                image::text_of_value(s.plane.plane_m), all.points));
   image::draw_text(
       out, kFrame, 26, 1, kInkColor,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -115,18 +116,23 @@ struct DrawnNode {
 /// The nodes that draw something, in the order of the tree, and where each named node is, which
 /// lights and cameras look up.
 std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_file,
-                                   NodePlaces& places) {
+                                   NodePlaces& places, ExactPlaces& exact) {
   struct Visit {
     const aiNode* node;
     NodePlace parent;
   };
   std::vector<DrawnNode> drawn;
-  std::vector<Visit> stack{{in.mRootNode, {world_from_file, to_double(world_from_file)}}};
+  std::vector<Visit> stack{{in.mRootNode, {world_from_file, as_stated(world_from_file)}}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
     stack.pop_back();
     const Mat34 local = mat34_of(node->mTransformation);
-    const NodePlace place{parent.world * local, parent.exact * to_double(local)};
+    const NodePlace place{parent.world * local, parent.exact * as_stated(local)};
+    const Vec3 at = column(local, 3);
+    if (at != Vec3{})
+      exact.read_step_m =
+          std::max(exact.read_step_m, std::cbrt(std::abs(double(determinant(parent.world)))) *
+                                          float_step(double(max_component(max(at, -at)))));
     places.emplace(node->mName.C_Str(), place);
     for (unsigned i = node->mNumChildren; i-- > 0;) stack.push_back({node->mChildren[i], place});
     if (node->mNumMeshes == 0) continue;
@@ -138,7 +144,7 @@ std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_fi
 
 /// Nodes that draw the same parts share one mesh.
 void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const Habits& habits,
-                   scene::Scene& out, ExactPlaces& exact) {
+                   DVec3 near, scene::Scene& out, ExactPlaces& exact) {
   std::map<std::vector<unsigned>, uint32_t> known;
   for (const DrawnNode& node : drawn) {
     const auto [mesh, is_new] = known.try_emplace(node.parts, uint32_t(out.meshes.size()));
@@ -147,7 +153,7 @@ void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const
       out.meshes.back().name = node.name;
     }
     out.instances.push_back({node.name, mesh->second, node.place.world});
-    exact.instances.push_back(node.place.exact);
+    exact.instances.push_back(node.place.exact * moved_by(near));
   }
 }
 
@@ -177,7 +183,8 @@ Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFi
 /// What Assimp gets in the place of a file that its reader could misread.
 struct Rewritten {
   PlainPly ply;
-  std::optional<std::string> text;  ///< of .x and .dae files
+  std::optional<std::string> text;  ///< of .x, .dae and .stl files
+  DVec3 near = {};                  ///< what vertices are relative to
 };
 
 /// Checks a file by its own rules, and writes it anew where Assimp needs that.
@@ -187,11 +194,14 @@ Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& wa
   LUXEL_TRY_STATUS(check_packed(source));
   if (source.extension == ".ply") {
     LUXEL_TRY(out.ply, write_plain_ply(source, warnings));
+    out.near = out.ply.near;
   } else if (source.extension == ".x") {
-    LUXEL_TRY(out.text, write_plain_x(source));
+    LUXEL_TRY(out.text, write_plain_x(source, out.near));
   } else if (source.extension == ".dae") {
     LUXEL_TRY_STATUS(check_collada(source));
-    LUXEL_TRY(out.text, write_plain_collada(source));
+    LUXEL_TRY(out.text, write_plain_collada(source, out.near));
+  } else if (source.extension == ".stl") {
+    LUXEL_TRY(out.text, write_near_stl(source, out.near));
   } else if (source.extension == ".fbx") {
     LUXEL_TRY_STATUS(check_fbx(source));
   }
@@ -250,9 +260,10 @@ Result<Imported> read_with_assimp(const SourceFile& source, ExactPlaces& exact) 
   LUXEL_TRY_STATUS(read_assimp_materials(*in, source, imported));
   NodePlaces places;
   const std::vector<DrawnNode> drawn =
-      drawn_nodes(*in, world_from_file(*in, source, imported.warnings), places);
+      drawn_nodes(*in, world_from_file(*in, source, imported.warnings), places, exact);
   const Habits habits{rewritten.ply.has_display_colors, source.extension == ".stl"};
-  add_instances(*in, drawn, habits, imported.scene, exact);
+  add_instances(*in, drawn, habits, rewritten.near, imported.scene, exact);
+  exact.is_relative = rewritten.near != DVec3{};
   add_assimp_lights(*in, source, places, imported, exact);
   add_assimp_cameras(*in, source, places, imported.scene, exact);
   if (source.extension == ".ply" || source.extension == ".stl")

@@ -5,6 +5,7 @@
 #include "luxel/base/check.h"
 #include "luxel/import/readers.h"
 #include "luxel/scene/held_range.h"
+#include "luxel/scene/origin.h"
 
 namespace luxel::import {
 namespace {
@@ -29,8 +30,8 @@ DBox3 box_of(const ExactPlaces& exact, const scene::Scene& scene) {
   return box;
 }
 
-/// The distance between a float and the next one, near `value`.
-double float_step(double value) { return std::ldexp(1.0, std::ilogb(std::max(value, 1e-30)) - 23); }
+/// So much rounding shows, as a part of the scene's size.
+constexpr double kSeen = 1e-4;
 
 /// Meshes whose own coordinates lie far from 0, seen in the size of the scene: rays are taken into
 /// the coordinates of shared meshes. `shifts`: what was taken off each mesh.
@@ -47,18 +48,28 @@ void move_meshes(double scene_size, const std::string& file, scene::Scene& scene
     if (!(far * scale > 8 * scene_size)) continue;
     shifts[m] = origin_for(box);
     for (Vec3& p : mesh.positions) p = to_float(to_double(p) - shifts[m]);
-    constexpr double kSeen = 1e-4;  // of the scene's size
     if (const double step = float_step(far); step * scale > kSeen * scene_size)
       told.push_back(fmt::format(
-          "{}: {} has its vertices {:.3g} m from its own origin, where the single precision of the "
-          "file has steps of {:.2g} m: they are rounded to that; export it with the distance in "
-          "its "
-          "node",
+          "{}: {} has its vertices {:.3g} m from its own origin, where single precision has steps "
+          "of {:.2g} m: they are rounded to that; export it with vertices near its own origin, and "
+          "the distance in its node",
           file, label("mesh", m, mesh.name), far * scale, step * scale));
   }
 }
 
 }  // namespace
+
+DMat34 as_stated(const Mat34& m) {
+  DMat34 out;
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 4; ++j) out.row[i][j] = scene::short_number(m.row[i][j]);
+  return out;
+}
+
+double float_step(double value) {
+  const auto below = float(value);
+  return double(std::nextafter(below, INFINITY)) - double(below);
+}
 
 DVec3 origin_for(const DBox3& box) {
   const DVec3 middle = middle_of(box);
@@ -69,8 +80,7 @@ DVec3 origin_for(const DBox3& box) {
   std::frexp(size, &exponent);  // size < 2^exponent <= 2 size
   const double unit = std::ldexp(1.0, exponent);
   const auto nearest = [&](double v) { return unit * std::round(v / unit); };
-  const DVec3 origin{nearest(middle.x), nearest(middle.y), nearest(middle.z)};
-  return largest_of(origin) > double(scene::kFarthest_m) ? DVec3{} : origin;
+  return {nearest(middle.x), nearest(middle.y), nearest(middle.z)};
 }
 
 // 1. A scene near its origin keeps its coordinates, to the bit. 2. The origin, from all vertices in
@@ -84,13 +94,21 @@ std::vector<std::string> move_towards_origin(const ExactPlaces& exact,
               exact.lights.size() == scene.lights.size() &&
               exact.cameras.size() == scene.cameras.size());
   const DBox3 box = box_of(exact, scene);
-  const DVec3 origin = wished.value_or(origin_for(box));
+  DVec3 origin = wished.value_or(origin_for(box));
+  // Nothing is held there, and validation says so.
+  if (largest_of(origin) > double(scene::kFarthest_m)) origin = {};
   if (origin == DVec3{} && !exact.is_relative) return {};
   std::vector<std::string> told;
   std::vector<DVec3> shifts(scene.meshes.size());
   move_meshes(size_of(box), file, scene, shifts, told);
   for (const scene::Instance& instance : scene.instances)
     imported.object_origin.push_back(shifts[instance.mesh]);
+  if (exact.read_step_m > kSeen * size_of(box))
+    told.push_back(fmt::format(
+        "{}: nodes lie so far from the origin that the single precision in which this format is "
+        "read has steps of {:.2g} m: places are rounded to that; move the scene nearer to the "
+        "origin, or export it as glTF",
+        file, exact.read_step_m));
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     Mat34& m = scene.instances[i].world_from_object;
     const DVec3 at = transform_point(exact.instances[i], shifts[scene.instances[i].mesh]) - origin;

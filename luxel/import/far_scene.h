@@ -24,7 +24,17 @@ struct ExactPlaces {
   std::vector<DVec3> lights, cameras;
   /// Meshes lie in coordinates relative to a point far from 0, which `instances` put back.
   bool is_relative = false;
+  /// The largest step of single precision at places that were rounded before `instances` could be
+  /// exact [m].
+  double read_step_m = 0;
 };
+
+/// The doubles that a file has stated, as it seems, where a library has made floats of them: those
+/// of the fewest digits that are these floats.
+DMat34 as_stated(const Mat34& m);
+
+/// The distance between a float and the next one, near `value`.
+double float_step(double value);
 
 /// Moves a scene that lies far from its origin towards it. With `wished` it takes that origin,
 /// whatever it is. Returns what is to be told: where single precision had rounded before.

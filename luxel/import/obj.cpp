@@ -286,7 +286,7 @@ Result<Imported> read_obj(const SourceFile& source, ExactPlaces& exact) {
   append_groups(found, reading, odd);
   warn_of(odd, source, out.warnings);
   exact.instances.assign(out.scene.instances.size(),
-                         to_double(source.world_from_file) * moved_by(near));
+                         as_stated(source.world_from_file) * moved_by(near));
   exact.is_relative = near != DVec3{};
   out.about_lost_lights =
       "an .obj file can hold no lights except emissive materials (Ke in its .mtl)";

@@ -2,7 +2,9 @@
 #include "luxel/import/ply.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <span>
 
 #include "luxel/import/ply_numbers.h"
@@ -117,8 +119,13 @@ void drop_incomplete(std::initializer_list<std::string_view> names, KeptProperti
   });
 }
 
-KeptProperties kept_of_vertex(const PlyElement& element) {
+bool is_coordinate(std::string_view plain) { return plain == "x" || plain == "y" || plain == "z"; }
+
+/// `is_text`: a place may have more digits than its type says.
+KeptProperties kept_of_vertex(const PlyElement& element, bool is_text) {
   KeptProperties out = kept_properties(element, kVertexNames);
+  for (auto& kept : out.kept)
+    if (is_text && is_coordinate(kept.plain)) kept.type = PlyType::f64;
   drop_incomplete({"nx", "ny", "nz"}, out);
   drop_incomplete({"red", "green", "blue"}, out);
   drop_incomplete({"u", "v"}, out);
@@ -231,7 +238,8 @@ Result<Surfaces> read_surfaces(const SourceFile& source, const PlyHeader& header
   uint64_t vertices = 0;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") vertices = element.count;
-    if (element.name == "vertex") out.of_vertex = kept_of_vertex(element);
+    if (element.name == "vertex")
+      out.of_vertex = kept_of_vertex(element, header.format == PlyHeader::Format::ascii);
     if (element.name == "material") out.of_material = kept_properties(element, kMaterialNames);
     if (element.name == "material" && element.count > 1)
       warnings.push_back(
@@ -246,6 +254,34 @@ Result<Surfaces> read_surfaces(const SourceFile& source, const PlyHeader& header
   if (out.material.empty() && !out.of_vertex.has("red") && header.texture_file.empty())
     add_default_material(out);
   return out;
+}
+
+/// Brings vertices that lie far from the file's origin near another one, which it returns. Those in
+/// single precision lose nothing where they are.
+DVec3 take_origin_off(Surfaces& surfaces) {
+  std::array<size_t, 3> at{SIZE_MAX, SIZE_MAX, SIZE_MAX};  // of x, y and z in a vertex
+  size_t size = 0;
+  for (const auto& kept : surfaces.of_vertex.kept) {
+    if (kept.type == PlyType::f64 && is_coordinate(kept.plain))
+      at[size_t(kept.plain[0] - 'x')] = size;
+    size += size_of(kept.type);
+  }
+  if (std::ranges::count(at, SIZE_MAX) > 0) return {};
+  const auto number = [&](size_t vertex, size_t axis) {
+    double out = 0;
+    std::memcpy(&out, surfaces.vertices.data() + vertex * size + at[axis], sizeof out);
+    return out;
+  };
+  DBox3 box;
+  for (const uint32_t v : surfaces.corners) box.extend({number(v, 0), number(v, 1), number(v, 2)});
+  const DVec3 origin = origin_for(box);
+  if (origin == DVec3{}) return origin;
+  for (size_t v = 0; v < surfaces.vertices.size() / size; ++v)
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double moved = number(v, axis) - std::array{origin.x, origin.y, origin.z}[axis];
+      std::memcpy(surfaces.vertices.data() + v * size + at[axis], &moved, sizeof moved);
+    }
+  return origin;
 }
 
 std::string_view name_of(PlyType type) {
@@ -322,6 +358,8 @@ Result<PlainPly> write_plain_ply(const SourceFile& source, std::vector<std::stri
   if (surfaces.corner_counts.empty())
     return fail(ErrorCode::bad_input, "{}: it has points but no faces; nothing can be lit",
                 source.name);
+  PlainPly plain;
+  plain.near = take_origin_off(surfaces);
   const std::string what = "the vertices of " + source.name;
   if (!surfaces.wedge_uvs.empty()) {
     LUXEL_TRY_STATUS(
@@ -329,7 +367,6 @@ Result<PlainPly> write_plain_ply(const SourceFile& source, std::vector<std::stri
     split_wedges(surfaces);
   }
   LUXEL_TRY_STATUS(source.memory.take(surfaces.bytes(), what));
-  PlainPly plain;
   plain.text = ply_text(header, surfaces);
   for (const auto& kept : surfaces.of_vertex.kept)
     plain.has_display_colors |= kept.plain == "red" && kept.type == PlyType::u8;

@@ -42,6 +42,7 @@ Result<PlyHeader> read_ply_header(const SourceFile& source);
 struct PlainPly {
   std::string text;
   bool has_display_colors = false;  ///< colours are bytes: display values, not linear ones
+  DVec3 near = {};                  ///< what vertices are relative to
 };
 
 /// Vertices, faces and the first material, little-endian. Assimp's own reader takes comments for

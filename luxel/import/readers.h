@@ -37,13 +37,17 @@ Result<Imported> read_with_assimp(const SourceFile& source, ExactPlaces& exact);
 
 /// Assimp's readers trust their input, and Debian's build aborts where an assertion fails: what can
 /// be told cheaply is told before. Errors: NaN, index out of range, a file that ends early.
-/// The text of a .x file of the same surfaces; none for a binary or packed one, or what is no .x.
-/// Errors: those of checks; memory.
-Result<std::optional<std::string>> write_plain_x(const SourceFile& source);
+/// Texts that Assimp gets instead have their vertices relative to `near`: it reads numbers in
+/// single precision. The text of a .x file of the same surfaces; none for a binary or packed one,
+/// or what is no .x. Errors: those of checks; memory.
+Result<std::optional<std::string>> write_plain_x(const SourceFile& source, DVec3& near);
+/// The text of a .stl file that lies far from its origin; none for another or a binary one. Errors:
+/// memory.
+Result<std::optional<std::string>> write_near_stl(const SourceFile& source, DVec3& near);
 Status check_collada(const SourceFile& source);
 /// The text of a .dae file that check_collada() has passed, in UTF-8, without blanks around values.
 /// Errors: broken XML; UTF-16; memory.
-Result<std::string> write_plain_collada(const SourceFile& source);
+Result<std::string> write_plain_collada(const SourceFile& source, DVec3& near);
 Status check_fbx(const SourceFile& source);
 /// Checks of a scene in an archive: .zae, .3mf, .zgl, .ifczip.
 Status check_packed(const SourceFile& source);

@@ -30,11 +30,12 @@ inline std::string lower_case(std::string text) {
   return text;
 }
 
-/// The whole word as a number; a + may stand before it. One that is too small for a float is 0, one
-/// that is too large is none.
-inline std::optional<float> finite_number(std::string_view word) {
+/// The whole word as a number; a + may stand before it. One that is too small for its type is 0,
+/// one that is too large is none.
+template <class T = float>
+std::optional<T> finite_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  float value = 0;
+  T value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   const bool too_small = error == std::errc::result_out_of_range &&
                          (word.find("e-") != word.npos || word.find("E-") != word.npos);

@@ -52,6 +52,8 @@ struct Walk {
   const SourceFile& source;
   Words words;
   std::string plain;
+  DBox3 box = {};   ///< of all vertices
+  DVec3 near = {};  ///< what they are written relative to
 
   template <class... Parts>
   void write(fmt::format_string<Parts...> format, Parts&&... parts) {
@@ -97,11 +99,13 @@ Result<uint64_t> next_count(Walk& walk) {
 }
 
 /// A finite number.
-Result<float> next_number(Walk& walk) {
+template <class T = float>
+Result<T> next_number(Walk& walk) {
   LUXEL_TRY(const std::string_view word, next_word(walk));
   // What old compilers print for a number that is none; Assimp takes it for 0, too.
-  if (word.find(".#IND") != word.npos || word.find(".#QNAN") != word.npos) return 0.0f;
-  if (const auto value = finite_number(word)) return *value;
+  if (word.find(".#IND") != word.npos || word.find(".#QNAN") != word.npos) return T(0);
+  if (const auto value = finite_number<T>(word); value && std::isfinite(float(*value)))
+    return *value;
   return walk.error("'{}' is not a finite number", word);
 }
 
@@ -113,6 +117,20 @@ Status copy_vectors(Walk& walk, uint64_t count, int size) {
       walk.write("{};", number);
     }
     walk.write(";");
+  }
+  return {};
+}
+
+/// The vertices of a mesh, less `near`; the box gets them as they stand.
+Status copy_vertices(Walk& walk, uint64_t count) {
+  for (uint64_t i = 0; i < count; ++i) {
+    DVec3 p;
+    for (double* coordinate : {&p.x, &p.y, &p.z}) {
+      LUXEL_TRY(*coordinate, next_number<double>(walk));
+    }
+    walk.box.extend(p);
+    const Vec3 q = to_float(p - walk.near);
+    walk.write("{};{};{};;", q.x, q.y, q.z);
   }
   return {};
 }
@@ -282,7 +300,7 @@ Status copy_mesh(Walk& walk) {
   LUXEL_TRY(const std::string name, enter(walk));
   LUXEL_TRY(mesh.vertices, next_count(walk));
   walk.write("Mesh {} {{\n{};", name, mesh.vertices);
-  LUXEL_TRY_STATUS(copy_vectors(walk, mesh.vertices, 3));
+  LUXEL_TRY_STATUS(copy_vertices(walk, mesh.vertices));
   LUXEL_TRY(mesh.faces, next_count(walk));
   walk.write("\n{};", mesh.faces);
   LUXEL_TRY_STATUS(copy_faces(walk, mesh.faces, mesh.vertices, "vertex index"));
@@ -343,7 +361,7 @@ Status copy_objects(Walk& walk) {
 
 }  // namespace
 
-Result<std::optional<std::string>> write_plain_x(const SourceFile& source) {
+Result<std::optional<std::string>> write_plain_x(const SourceFile& source, DVec3& near) {
   std::string_view text = text_of(source.bytes);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   // Binary and packed files, and what is no .x at all, are left to Assimp.
@@ -351,7 +369,14 @@ Result<std::optional<std::string>> write_plain_x(const SourceFile& source) {
     return std::nullopt;
   // 1e9 becomes 1e+09;
   LUXEL_TRY_STATUS(source.memory.take(3 * text.size(), "the text of " + source.name));
-  Walk walk{source, {text, std::min(text.find('\n'), text.size())}, "xof 0303txt 0032\n"};
+  const Words words{text, std::min(text.find('\n'), text.size())};
+  const std::string head = "xof 0303txt 0032\n";
+  Walk walk{source, words, head};
+  LUXEL_TRY_STATUS(copy_objects(walk));
+  const DVec3 off = origin_for(walk.box);
+  if (off == DVec3{}) return std::move(walk.plain);
+  near = {off.x, off.y, -off.z};  // Assimp turns Direct3D's left-handed space round
+  walk.words = words, walk.plain = head, walk.near = off;
   LUXEL_TRY_STATUS(copy_objects(walk));
   return std::move(walk.plain);
 }

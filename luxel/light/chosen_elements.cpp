@@ -81,7 +81,9 @@ MeanSquare square_error(const Answers& answers, std::span<const Rgb> irradiance)
 
 Result<std::vector<Rgb>> direct_anew(const TexelScene& in, const SupersampleParams& params,
                                      Progress& progress) {
-  LUXEL_TRY(DirectLight out, direct_light(lit_elements(in), params.direct, progress));
+  DirectParams at_sample = params.direct;
+  if (params.points > 1) at_sample.samples = 1;  // only what has no points keeps it
+  LUXEL_TRY(DirectLight out, direct_light(lit_elements(in), at_sample, progress));
   std::vector<uint32_t> all(in.elements.size());
   std::iota(all.begin(), all.end(), 0);
   if (params.points > 1) LUXEL_TRY_STATUS(average_texels(in, all, params, out, progress));

@@ -292,7 +292,6 @@ TEST(StatedErrors, OfWhatTheDenoiserLeaves) {
     stated.push_back(*solved->light.delivered_error);
     EXPECT_GT(stated.back(), truth / kEstimateFactor);
     EXPECT_LT(stated.back(), truth * kEstimateFactor);
-                stated.back(), truth);
   }
   EXPECT_NEAR(stated[0], stated[1], 0.2 * stated[0]);
 }

@@ -140,7 +140,7 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
   light.hits.rounds.clear();
   light.hits.device = nullptr;
   if (in.params.tells_answers) {
-    LUXEL_TRY(out.answers, answers_of(in, light, progress));
+    LUXEL_TRY(out.answers, answers_of(in, light, out.enclosed, progress));
   }
   LUXEL_TRY_STATUS(judge(in, light, progress));
   drop_light(light.hits);

@@ -184,13 +184,14 @@ Status measure_noise(const Request& in, Progressive& light, Progress& progress) 
 
 }  // namespace
 
-Result<light::Answers> answers_of(const Request& in, const Progressive& light, Progress& progress) {
+Result<light::Answers> answers_of(const Request& in, const Progressive& light,
+                                  std::span<const uint8_t> enclosed, Progress& progress) {
   progress.begin("check", 0);
   std::vector<float> noise = light.direct.variance;
   for (size_t i = 0; i < noise.size(); ++i) noise[i] += light.bounced.variance[i];
   Progress own;  // its stages are those of the check
   LUXEL_TRY(light::Answers out,
-            answers_by_repeating(in.scene, in.sides, to_repeat(in, light, noise),
+            answers_by_repeating(in.scene, in.sides, to_repeat(in, light, noise), enclosed,
                                  repeat_params(in, light), own));
   LUXEL_TRY_STATUS(stopped(progress));
   return out;

@@ -89,7 +89,8 @@ Status choose_places(const Request& in, Progressive& light, Progress& progress);
 /// How far the light so far is off. Errors: cancelled.
 Status judge(const Request& in, Progressive& light, Progress& progress);
 /// Gather::answers, when all bounces are known. Errors: cancelled, disk full.
-Result<light::Answers> answers_of(const Request& in, const Progressive& light, Progress& progress);
+Result<light::Answers> answers_of(const Request& in, const Progressive& light,
+                                  std::span<const uint8_t> enclosed, Progress& progress);
 /// The light of the rays so far, which are not all, and how well it is known.
 Status estimate_round(const Request& in, Progressive& light, Progress& progress);
 /// Adds rays where they are needed most. False: there is nothing to add, or no time. Errors:

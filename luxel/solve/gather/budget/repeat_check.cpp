@@ -162,9 +162,10 @@ Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transpor
 
 Result<light::Answers> answers_by_repeating(const light::TexelScene& in,
                                             const transport::OwnSides& sides,
-                                            const LightToRepeat& light, const RepeatParams& params,
-                                            Progress& progress) {
-  const auto hidden = [&](size_t i) { return is_hidden(light.hits, i); };
+                                            const LightToRepeat& light,
+                                            std::span<const uint8_t> enclosed,
+                                            const RepeatParams& params, Progress& progress) {
+  const auto hidden = [&](size_t i) { return enclosed[i] != 0; };
   const auto rays_of_answer = [&](size_t i) {
     return uint16_t(
         std::clamp(kAnswerTimes * int(light.hits.samples[i]), kFewestAnswerRays, kMostAnswerRays));

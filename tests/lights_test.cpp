@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/vec_double.h"
+#include "tests/black_room.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 
@@ -13,6 +15,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string kWall = scene_file("ies/wall.gltf");
 
@@ -86,6 +89,31 @@ TEST(Profiles, WhatCannotBeIsSaid) {
   EXPECT_EQ(kept.code, 1);
   EXPECT_THAT(kept.err, HasSubstr(".lxr files do not keep light profiles"));
   EXPECT_TRUE(files_in(s.path).empty());
+}
+
+// All light of a lamp in the middle of a black room's ceiling falls on floor and walls: 2 pi I over
+// 2 (4 * 3 + 4 * 3 + 4 * 4) m^2. Texels on the walls beside the ceiling are lit unevenly, and
+// patches of the matrix solver cut corners.
+TEST(Lamps, InTheCeilingShineForEverySolver) {
+  const ScratchFolder s;
+  const auto scene = s.write("flush.gltf", room_gltf({-2, 0, -2}, {2, 3, 2}, 0, {0, 3, 0}, 900));
+  const double mean = 2 * kPiDouble * 900 / 80;
+  for (const char* solver : {"gather", "reference", "hemicube", "matrix", "hierarchical"}) {
+    std::string err;
+    const Lightmap map = bake(scene.string(), std::string("--solver ") + solver, &err);
+    EXPECT_NEAR(map.mean_luminance(), mean, 0.01 * mean) << solver;
+    EXPECT_THAT(err, Not(HasSubstr("lights nothing"))) << solver;
+  }
+}
+
+TEST(Lamps, BehindTheCeilingAreNamed) {
+  const ScratchFolder s;
+  const auto scene =
+      s.write("above.gltf", room_gltf({-2, 0, -2}, {2, 3, 2}, 0, {0, 3.005f, 0}, 900));
+  std::string err;
+  EXPECT_EQ(bake(scene.string(), "", &err).mean_luminance(), 0);
+  EXPECT_THAT(err, HasSubstr("light 'lamp' lights nothing: it lies 5"));
+  EXPECT_THAT(err, HasSubstr(" mm behind the front of 'room' (instance 0)"));
 }
 
 // A plate under an open sky gets what the sky and its sun bring to the horizontal; at 50 degrees

@@ -16,6 +16,7 @@
 #include "luxel/pipeline/bake/bake_device.h"
 #include "luxel/pipeline/bake/bake_team.h"
 #include "luxel/pipeline/bake/camera.h"
+#include "luxel/pipeline/bake/dark_lamps.h"
 #include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/bake/finish_bake.h"
@@ -208,6 +209,17 @@ Status encode_lightmaps(Team* team, Bake& bake, Progress& progress) {
   return {};
 }
 
+/// Whether the texel at a place lies inside of something.
+bool is_hidden_at(const Bake& bake, const scene::SurfacePoint& p) {
+  if (bake.light.hidden.empty()) return false;
+  const auto& corners = bake.atlas.corners[bake.atlas.triangle_number(p.instance, p.triangle)];
+  const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
+  const int last = bake.map.resolution - 1;
+  const int x = std::clamp(int(at.x), 0, last), y = std::clamp(int(at.y), 0, last);
+  const uint32_t texel = bake.map.texel_at[size_t(y) * size_t(last + 1) + size_t(x)];
+  return texel != atlas::kNone && bake.light.hidden[texel];
+}
+
 /// The rest of bake_scene() for a bake that has its scene.
 Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const BakeObserver& watcher,
                    Bake& bake, Progress& progress) {
@@ -250,9 +262,14 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
     LUXEL_TRY(bake.surface_maps,
               surface_maps(settings, input, masked, bake.light.hidden, progress));
   }
-  const std::string dark =
-      settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();
-  if (!dark.empty()) bake.warnings.push_back(dark);
+  if (settings.light == LightPart::all) {
+    const std::string dark = about_dark_surfaces(bake);
+    if (!dark.empty()) bake.warnings.push_back(dark);
+    const std::vector<std::string> lamps =
+        about_dark_lamps(bake.scene, ready.tracer,
+                         [&](const scene::SurfacePoint& p) { return is_hidden_at(bake, p); });
+    bake.warnings.insert(bake.warnings.end(), lamps.begin(), lamps.end());
+  }
   LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, regions, bake, progress, keepers.team));
   free_memory(regions);
   LUXEL_TRY_STATUS(encode_lightmaps(keepers.team, bake, progress));

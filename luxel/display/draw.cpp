@@ -65,19 +65,65 @@ std::vector<uint32_t> take_differing(const image::Image& picture, std::span<cons
 /// What is seen in a direction in which there is no surface.
 using Behind = std::function<Rgb(Vec3)>;
 
-/// Mean over a pixel's samples; summed in double so that equal samples give back their value.
-void write_pixel(std::span<const trace::Hit> hits, std::span<const trace::Ray> rays,
-                 const SeenAt& seen_at, const Behind& behind, float* pixel) {
-  double r = 0, g = 0, b = 0;
-  size_t found = 0;
-  for (size_t k = 0; k < hits.size(); ++k) {
-    const Rgb c = hits[k].found() ? seen_at(hits[k]) : behind(rays[k].direction);
-    r += double(c.x), g += double(c.y), b += double(c.z);
-    found += hits[k].found() ? 1 : 0;
+/// Surfaces that a ray goes through, at most, and the share of what it sees that lies behind them
+/// below which nothing more is looked for.
+constexpr int kMostLayers = 64;
+constexpr float kLeastLeft = 1.0f / 512;
+
+/// What a ray sees, and the share of that which surfaces cover.
+struct SeenByRay {
+  Rgb radiance{};
+  float covered = 0;
+};
+
+/// From front to back, each surface covers its share of what lies behind it. [Porter84]
+std::vector<SeenByRay> seen_along(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                  std::span<const trace::Ray> from, bool backs,
+                                  const SeenAt& seen_at, const Behind& behind) {
+  std::vector<trace::Ray> rays(from.begin(), from.end());
+  std::vector<SeenByRay> out(rays.size());
+  std::vector<float> left(rays.size(), 1);
+  std::vector<size_t> of(rays.size());  // those that rays still look for
+  std::iota(of.begin(), of.end(), 0);
+  std::vector<trace::Hit> hits(rays.size());
+  for (int layer = 0; layer < kMostLayers && !rays.empty(); ++layer) {
+    hits.resize(rays.size());
+    tracer.closest_covers(rays, hits, layer == 0 ? trace::Packets::bundles : trace::Packets::any);
+    size_t open = 0;
+    for (size_t k = 0; k < hits.size(); ++k) {
+      const trace::Hit& hit = hits[k];
+      const size_t i = of[k];
+      if (!hit.found()) continue;
+      if (backs || !hit.back_face || material_at(scene, hit.point()).double_sided) {
+        const float coverage = scene::passage_at(scene, hit.point()).coverage;
+        out[i].radiance += seen_at(hit) * (left[i] * coverage);
+        left[i] *= 1 - coverage;
+        if (left[i] < kLeastLeft) left[i] = 0;
+        if (left[i] == 0) continue;
+      }
+      // Just behind the hit, by more than the rounding of t between packets and single rays.
+      rays[k].t_min = std::max(hit.t * (1 + 4e-7f), 1e-20f);
+      rays[open] = rays[k], of[open] = i, ++open;
+    }
+    rays.resize(open), of.resize(open);
   }
-  const double count = double(hits.size());
+  for (size_t i = 0; i < out.size(); ++i) {
+    if (left[i] > 0) out[i].radiance += behind(from[i].direction) * left[i];
+    out[i].covered = 1 - left[i];
+  }
+  return out;
+}
+
+/// Mean over a pixel's samples; summed in double so that equal samples give back their value.
+void write_pixel(std::span<const SeenByRay> seen, float* pixel) {
+  double r = 0, g = 0, b = 0, covered = 0;
+  for (const SeenByRay& s : seen) {
+    r += double(s.radiance.x), g += double(s.radiance.y), b += double(s.radiance.z);
+    covered += double(s.covered);
+  }
+  const double count = double(seen.size());
   pixel[0] = float(r / count), pixel[1] = float(g / count), pixel[2] = float(b / count);
-  pixel[3] = float(double(found) / count);
+  pixel[3] = float(covered / count);
 }
 
 }  // namespace
@@ -100,12 +146,6 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
     const float most = params.brightest_behind;
     return min(scene::smooth_surroundings_towards(scene, direction), Rgb{most, most, most});
   };
-  const auto hits_of = [&](std::span<trace::Ray> rays) {
-    if (!params.backs) return trace::visible_hits(scene, tracer, rays);
-    std::vector<trace::Hit> hits(rays.size());
-    tracer.closest_hits(rays, hits, trace::Packets::bundles);
-    return hits;
-  };
   image::Image picture(params.width, params.height, 4);
   std::vector<uint32_t> pixels(size_t(params.width) * size_t(params.height));
   std::iota(pixels.begin(), pixels.end(), 0);
@@ -114,11 +154,10 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
     parallel_for(pixels.size(), kPixelsAtOnce, [&](size_t begin, size_t end) {
       if (progress.cancelled()) return;
       const std::span some = std::span(pixels).subspan(begin, end - begin);
-      std::vector<trace::Ray> rays = rays_of(through, some, per_axis);
-      const std::vector<trace::Hit> hits = hits_of(rays);
+      const std::vector<SeenByRay> seen = seen_along(
+          scene, tracer, rays_of(through, some, per_axis), params.backs, seen_at, behind);
       for (size_t i = 0; i < some.size(); ++i)
-        write_pixel(std::span(hits).subspan(i * per_pixel, per_pixel),
-                    std::span(rays).subspan(i * per_pixel, per_pixel), seen_at, behind,
+        write_pixel(std::span(seen).subspan(i * per_pixel, per_pixel),
                     picture.data.data() + 4 * size_t(some[i]));
       progress.advance(some.size());
     });

@@ -113,6 +113,34 @@ TEST(Draw, MirroredInstanceKeepsItsFront) {
   EXPECT_FLOAT_EQ(draw_ok(scene, camera_on_z(2), {4, 4, 1}).rgb(1, 1).x, 0.5f / kPi);
 }
 
+scene::Material pane(float rho, float alpha) {
+  scene::Material material = gray(rho);
+  material.alpha_mode = scene::AlphaMode::blend, material.alpha = alpha;
+  return material;
+}
+
+// Of the nearer pane a half, of the farther one a quarter of what is left, and the wall's rest. A
+// pane that turns its back is not there.
+TEST(Draw, BlendedSurfacesCoverTheirShare) {
+  scene::Scene scene;
+  add_square(scene, {0, 0, 1}, {10, 0, 0}, {0, 10, 0}, pane(0.8f, 0.25f));
+  add_square(scene, {0, 0, 1.5f}, {10, 0, 0}, {0, 10, 0}, pane(0.2f, 0.5f));
+  add_square(scene, {0, 0, 1.2f}, {-10, 0, 0}, {0, 10, 0}, pane(0.9f, 0.5f));
+  scene.background = {0.1f, 0.2f, 0.3f};
+  const float panes = (0.5f * 0.2f + 0.5f * 0.25f * 0.8f) / kPi, left = 0.5f * 0.75f;
+  const auto expect_everywhere = [&](Rgb behind, float covered) {
+    const image::Image picture = draw_ok(scene, camera_on_z(2), {50, 37, 2});
+    for (int y = 0; y < 37; ++y)
+      for (int x = 0; x < 50; ++x) {
+        EXPECT_LE(length(picture.rgb(x, y) - (Rgb{panes, panes, panes} + behind * left)), 1e-6f);
+        EXPECT_FLOAT_EQ(picture.at(x, y)[3], covered);
+      }
+  };
+  expect_everywhere(scene.background, 1 - left);
+  add_square(scene, {}, {10, 0, 0}, {0, 10, 0}, gray(0.5f));
+  expect_everywhere(Rgb{0.5f, 0.5f, 0.5f} * (1 / kPi), 1);
+}
+
 TEST(Draw, MissesShowTheBackground) {
   scene::Scene scene;
   add_square(scene, {0, 0, 5}, {1, 0, 0}, {0, 1, 0}, gray(0.5f));

@@ -83,6 +83,10 @@ class RayTracer {
   /// nearby origins and directions next to each other run faster. Sizes are equal.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
                     Packets packets = Packets::any) const;
+  /// The same without chance: what covers anything of what lies behind it, as far as that is so
+  /// (scene::Passage), stops every ray.
+  void closest_covers(std::span<const Ray> rays, std::span<Hit> hits,
+                      Packets packets = Packets::any) const;
   /// What one ray meets first. Many rays are faster in closest_hits().
   Hit closest_hit(const Ray& ray) const;
   /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
@@ -109,6 +113,8 @@ class RayTracer {
   size_t sorted_triangles() const;
 
  private:
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, Packets packets,
+                    bool by_chance) const;
   static Result<RayTracer> build_with(const scene::Scene& scene, const std::vector<bool>& shared);
   struct Impl;
   explicit RayTracer(std::unique_ptr<Impl> impl);

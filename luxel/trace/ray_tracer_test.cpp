@@ -272,6 +272,17 @@ TEST(RayTracer, NothingComesThroughAWallBehindGlass) {
   for (const Rgb& s : share) EXPECT_EQ(s, (Rgb{}));
 }
 
+TEST(RayTracer, CoversStopEveryRay) {
+  scene::Material hole;
+  hole.alpha_mode = scene::AlphaMode::mask, hole.alpha = 0.1f;
+  const scene::Scene scene = panes({hole, film({1, 0.5f, 0}, 0), film({1, 0.5f, 0}, 0.01f), {}});
+  const auto tracer = RayTracer::build(scene);
+  const std::vector<Ray> rays = rays_through_panes(1000, INFINITY);
+  std::vector<Hit> hits(rays.size());
+  tracer->closest_covers(rays, hits);
+  for (const Hit& hit : hits) EXPECT_EQ(hit.instance, 2u);
+}
+
 // As many rays stop as the pane covers, and those that go on carry the tints of what they passed.
 TEST(RayTracer, RaysStopAtGlassByItsCoverage) {
   const scene::Scene scene = panes({film({1, 0.5f, 0}, 0.25f), glass({0.5f, 1, 1}, 0.8f), {}});

@@ -34,6 +34,10 @@ void let_through(const RTCFilterFunctionNArguments* args) {
         {RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)}};
     const scene::Passage passage = scene::passage_at(scene, p);
     if (passage.coverage >= 1) continue;
+    if (query.through == Through::none) {
+      if (passage.coverage <= 0) args->valid[i] = 0;
+      continue;
+    }
     const uint64_t place = uint64_t(p.instance) << 32 | p.triangle;
     if (query.through == Through::chance) {
       if (chance_of(args, i, place) >= passage.coverage) args->valid[i] = 0;

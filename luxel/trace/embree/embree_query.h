@@ -23,6 +23,7 @@ inline uint32_t instance_of(uint32_t instance_id, uint32_t geometry_id) {
 /// What a query does with the light of a packet's rays that goes straight through surfaces.
 enum class Through : uint8_t {
   chance,  ///< let the ray through or not
+  none,    ///< stop it, unless nothing is there
   tint,    ///< let it through, and multiply its light by the tint
   share    ///< the same with (1 - coverage) tint; where nothing is left, it is blocked
 };

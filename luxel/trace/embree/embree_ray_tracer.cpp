@@ -102,8 +102,19 @@ void trace_occluded(RTCScene top, Query& query, std::span<const Ray> rays, const
 
 void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
                              Packets packets) const {
+  closest_hits(rays, hits, packets, true);
+}
+
+void RayTracer::closest_covers(std::span<const Ray> rays, std::span<Hit> hits,
+                               Packets packets) const {
+  closest_hits(rays, hits, packets, false);
+}
+
+void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, Packets packets,
+                             bool by_chance) const {
   LUXEL_CHECK(rays.size() == hits.size());
-  Query query{*impl_->scene, packet_context(impl_->is_coherent(packets, rays.size()))};
+  Query query{*impl_->scene, packet_context(impl_->is_coherent(packets, rays.size())),
+              by_chance ? Through::chance : Through::none};
   with_packets(impl_->has_wide_vectors, [&]<class P>(P) {
     typename P::Hits packet;
     begin_packets<P>(packet.ray);

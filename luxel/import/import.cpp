@@ -22,9 +22,7 @@ Result<Imported> read_scene(const SourceFile& source, const ImportParams& params
   LUXEL_TRY(Imported imported, is_gltf                      ? read_gltf(source, exact)
                                : source.extension == ".obj" ? read_obj(source, exact)
                                                             : read_with_assimp(source, exact));
-  // Nothing is moved until every output speaks of the world of the file.
-  const DVec3 origin = params.origin.value_or(DVec3{});
-  for (std::string& told : move_towards_origin(exact, origin, source.name, imported))
+  for (std::string& told : move_towards_origin(exact, params.origin, source.name, imported))
     imported.warnings.push_back(std::move(told));
   return imported;
 }

@@ -153,6 +153,16 @@ class Options(unittest.TestCase):
         with self.assertRaisesRegex(OSError, "nowhere"):
             luxel.load(b"nowhere\xff.glb")
 
+    def test_a_file_far_from_its_origin_says_so(self):
+        corners = np.array([(512345.678, 87.5, -5403210.123)]) + [(0, 0, 0), (1, 0, 0), (0, 0, -1)]
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "far.obj")
+            file.write_text("".join(f"v {x:.3f} {y:.3f} {z:.3f}\n" for x, y, z in corners) + "f 1 2 3\n")
+            scene = luxel.load(file)
+        self.assertEqual((scene.origin.dtype, scene.origin.shape), (np.float64, (3,)))
+        self.assertTrue(np.allclose(scene.triangles[0] + scene.origin, corners, rtol=0, atol=1e-6))
+        self.assertEqual(list(luxel.Scene().origin), [0, 0, 0])
+
     def test_lists_and_switches_are_those_of_the_command(self):
         a = luxel.bake(square(), resolution=16, samples=4, background=(1, 2, 3), denoise=False, stitch=False)
         b = luxel.bake(square(), resolution=16, samples=4, background="1,2,3", no_denoise=True, no_stitch=True)

@@ -399,7 +399,12 @@ TEST_F(SaveFarScene, IsReadBackWhereItWasPut) {
   EXPECT_LE(scene::world_bounds(desk.read->scene).diagonal(), 4);
   move(desk, 0, turned_about({0.5f, 0, 0}, {0, 1, 0}, 1.5f));
   move(desk, instance_of(desk, "row") + 2, turned_about({1, 0, 0}, {0, 0, 1}, 0.5f));
-  expect_same(read_back(desk), desk);
+  const scene::Scene saved = read_back(desk);
+  expect_same(saved, desk);
+  const Box3 box = scene::world_bounds(saved),
+             wanted = scene::world_bounds(edited(desk.read->scene, desk.now));
+  EXPECT_LE(length(box.lower - wanted.lower), 1e-5f);
+  EXPECT_LE(length(box.upper - wanted.upper), 1e-5f);
 }
 
 TEST_F(SaveScene, AFileThatHasChangedIsNotSaved) {

@@ -86,8 +86,8 @@ TEST_F(FarScenes, HaveTheTexelsOfNearOnes) {
         fmt::format("bake room.gltf -o {} --solver {} --resolution 32 {}", solver, solver, options);
     run("near", bake), run("far", bake);
     for (const char* file : {"/lightmap.exr", "/preview.png"})
-      EXPECT_EQ(slurp(in("near", solver + std::string(file))),
-                slurp(in("far", solver + std::string(file))))
+      EXPECT_TRUE(slurp(in("near", solver + std::string(file))) ==
+                  slurp(in("far", solver + std::string(file))))
           << solver;
   }
 }
@@ -99,7 +99,8 @@ TEST_F(FarScenes, HaveTheTexelsOfNearOnesAtAnyDistance) {
   for (const double far : {1e4, 1e5, 1e6}) {
     scratch_.write("far/room.gltf", room_at({far, 0, far}));
     run("far", bake);
-    EXPECT_EQ(slurp(in("near", "out/lightmap.exr")), slurp(in("far", "out/lightmap.exr"))) << far;
+    EXPECT_TRUE(slurp(in("near", "out/lightmap.exr")) == slurp(in("far", "out/lightmap.exr")))
+        << far;
   }
 }
 
@@ -143,7 +144,7 @@ TEST_F(FarScenes, AreSeenFromTheWorldOfTheFile) {
   run("far",
       "render room.gltf --technique path --samples 4 --size 32x24 -o a.png "
       "--eye 1000001,-7999,-4999996.5 --look-at 1000002,-7999.5,-5000000");
-  EXPECT_EQ(slurp(in("near", "a.png")), slurp(in("far", "a.png")));
+  EXPECT_TRUE(slurp(in("near", "a.png")) == slurp(in("far", "a.png")));
 }
 
 TEST_F(FarScenes, LeaveBakesInTheWorldOfTheFile) {
@@ -179,7 +180,7 @@ TEST_F(FarScenes, LeaveBakesInTheWorldOfTheFile) {
   }
   // Pages are drawn in single precision: theirs is the near scene.
   if (has_page) {
-    EXPECT_EQ(slurp(in("near", "out/view.html")), slurp(in("far", "out/view.html")));
+    EXPECT_TRUE(slurp(in("near", "out/view.html")) == slurp(in("far", "out/view.html")));
   }
   // What a bake left is read with the scene that it is of.
   const std::string from = "probe room.gltf --from out --at ";
@@ -225,20 +226,22 @@ TEST_F(FarScenes, HaveWorkPlanesInTheWorldOfTheFile) {
 // Of two parallel unit squares 1 m apart, by the closed form [Howell, C-11]. The table's rays make
 // the standard error sqrt(F (1 - F) / rays).
 TEST_F(FarScenes, ExchangeWhatNearOnesDo) {
-  std::string obj;
-  for (const double z : {0, 1})
-    for (const auto& [x, y] : {std::pair(0.0, 0), {1.0, 0}, {1.0, 1}, {0.0, 1}})
-      obj += fmt::format("v {} {} {}\n", 10000.3 + x, y, 10000.7 + z);
-  obj += "g a\nf 1 2 3 4\ng b\nf 8 7 6 5\n";
-  scratch_.write("far/squares.obj", obj);
   constexpr double kFactor = 0.19982489569838738, kRays = 1 << 18;
-  run("far", "factors squares.obj --method rays -o f.csv");
-  double there = 0, back = 0;
-  const std::string table = slurp(in("far", "f.csv"));
-  ASSERT_EQ(std::sscanf(table.c_str(), "surface,a,b\na,0,%lf\nb,%lf,0", &there, &back), 2) << table;
-  const double error = std::sqrt(kFactor * (1 - kFactor) / kRays);
-  EXPECT_NEAR(there, kFactor, 3 * error);
-  EXPECT_NEAR(back, kFactor, 3 * error);
+  for (const double far : {1e4, 1e6}) {
+    std::string obj;
+    for (const double z : {0, 1})
+      for (const auto& [x, y] : {std::pair(0.0, 0), {1.0, 0}, {1.0, 1}, {0.0, 1}})
+        obj += fmt::format("v {:.1f} {} {:.1f}\n", far + 0.3 + x, y, far + 0.7 + z);
+    scratch_.write("far/squares.obj", obj + "g a\nf 1 2 3 4\ng b\nf 8 7 6 5\n");
+    run("far", "factors squares.obj --method rays -o f.csv");
+    double there = 0, back = 0;
+    const std::string table = slurp(in("far", "f.csv"));
+    ASSERT_EQ(std::sscanf(table.c_str(), "surface,a,b\na,0,%lf\nb,%lf,0", &there, &back), 2)
+        << table;
+    const double error = std::sqrt(kFactor * (1 - kFactor) / kRays);
+    EXPECT_NEAR(there, kFactor, 3 * error) << far;
+    EXPECT_NEAR(back, kFactor, 3 * error) << far;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/solver/hierarchical.h"
@@ -294,6 +295,50 @@ TEST(StatedErrors, OfWhatTheDenoiserLeaves) {
     EXPECT_LT(stated.back(), truth * kEstimateFactor);
   }
   EXPECT_NEAR(stated[0], stated[1], 0.2 * stated[0]);
+}
+
+/// A closed box of side 1 m that reflects 99 %, with a lamp of a 150th of its walls. The mean light
+/// is what that sends per area of all walls, over 0.01.
+scene::Scene bright_box() {
+  scene::Scene s = scene::furnace_box({0.99f, 0.99f, 0.99f}, {}, 5);
+  const uint32_t lamp = scene::add_material(s, "lamp", {0.99f, 0.99f, 0.99f}, {1, 1, 1});
+  for (const size_t t : {24, 25}) s.meshes[0].triangle_material[t] = lamp;
+  return s;
+}
+
+// Where light is reflected a hundred times, each texel's noise and what rays read wrong are carried
+// on as often: by few rays the noise is most of the error, by more it is what texels cost. Nearly
+// all of it is in the mean light, which is known. The rest is found by the difference of two bakes.
+// Light takes hundreds of sweeps to settle here, and fewer bakes would not tell their noise: hence
+// some seconds.
+TEST(StatedErrors, OfABrightRoomCountWhatBouncesMakeOfThem) {
+  Progress progress;
+  const auto p = prepare(bright_box(), 64, progress);
+  ASSERT_TRUE(p);
+  const size_t n = (*p)->elements.size();
+  const double exact = kPiDouble / 150 / 0.01;
+  pipeline::BakeSettings settings;
+  for (const int samples : {8, 64}) {
+    settings.samples = samples, settings.direct_samples = 16;
+    std::vector<float> before;
+    double stated2 = 0, truth2 = 0;
+    constexpr uint64_t kSeeds = 3;
+    for (settings.seed = 1; settings.seed <= kSeeds; ++settings.seed) {
+      const auto solved = solve(**p, "gather", settings, progress);
+      ASSERT_TRUE(solved);
+      std::vector<float> light;
+      for (const Rgb& e : solved->light.irradiance) light.push_back(luminance(e));
+      const double mean = std::accumulate(light.begin(), light.end(), 0.0) / double(n);
+      for (float& e : light) e /= float(mean);
+      truth2 += std::pow(mean / exact - 1, 2) / kSeeds;
+      for (size_t i = 0; i < before.size(); ++i)
+        truth2 += std::pow(double(light[i] - before[i]), 2) / (2 * double(n) * (kSeeds - 1));
+      before = light;
+      stated2 += std::pow(solved->light.relative_error, 2) / kSeeds;
+    }
+    EXPECT_GT(std::sqrt(stated2), std::sqrt(truth2) / kEstimateFactor) << samples;
+    EXPECT_LT(std::sqrt(stated2), std::sqrt(truth2) * kEstimateFactor) << samples;
+  }
 }
 
 }  // namespace

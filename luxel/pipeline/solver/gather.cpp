@@ -153,7 +153,7 @@ TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
   out.direct = std::move(result.direct);
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);
-  out.relative_unseen = result.relative_texels, out.answers = std::move(result.answers);
+  out.relative_unseen = result.relative_unseen, out.answers = std::move(result.answers);
   out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
   out.scratch_bytes = result.hit_bytes_in_file, out.rays_kept = result.rays_kept;
   return out;

@@ -169,7 +169,7 @@ std::vector<uint16_t> rays_of(const TracedHits& hits) {
 void take_result(Progressive&& light, Gather& out) {
   out.relative_error = light.errors.expected.rms();
   out.relative_noise = std::sqrt(light.errors.expected.noise);
-  out.relative_texels = std::sqrt(light.errors.expected.texels);
+  out.relative_unseen = light.errors.expected.rms_of_gathered_light();
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);

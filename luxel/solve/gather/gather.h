@@ -125,10 +125,11 @@ struct Gather {
   /// Root mean square error to expect over the mean luminance, of elements that no solid hides: of
   /// the noise (pooled_variances) and of what texels cost (texel_error).
   double relative_error = 0;
-  double relative_noise = 0;   ///< of its noise alone
-  double relative_texels = 0;  ///< of what texels cost alone
+  double relative_noise = 0;  ///< of its noise alone
+  /// The part that `answers` do not show: what texels cost, and noise that all elements share.
+  double relative_unseen = 0;
   /// With tells_answers: the light of some elements anew, by which a caller can judge what it makes
-  /// of `irradiance`. What texels cost is the same in them.
+  /// of `irradiance`.
   light::Answers answers;
 };
 

@@ -97,17 +97,20 @@ TEST(ErrorP95, IsThatOfNormalErrors) {
 }
 
 // A texel with twice the light of all others. Linear light around it is too bright by (1 + 1 - 4) /
-// 12 along both axes there and by (2 + 1 - 2) / 12 in its four neighbours; errors of 25 texels
-// count as one.
+// 12 along both axes there and by (2 + 1 - 2) / 12 in its four neighbours; errors of 6.9 texels
+// count as one. A quarter of the light has not been reflected before.
 TEST(TexelError, IsThatOfLightBetweenTexels) {
   const auto room = lay_out(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}), 32);
   const size_t n = room->elements.size();
   TracedHits hits = no_hits(n);
   std::fill(hits.samples.begin(), hits.samples.end(), uint16_t(1));
   std::vector<Rgb> light(n, {1, 1, 1});
-  const auto error = [&] {
-    return error_by_neighbours(room->atlas, room->map, room->elements, hits, light);
+  const std::vector<Rgb> direct(n, {0.25f, 0.25f, 0.25f});
+  const auto found = [&] {
+    return error_by_neighbours(room->atlas, room->map, room->elements, hits, direct, light);
   };
+  const auto error = [&] { return found().error; };
+  EXPECT_NEAR(found().gain, 4, 1e-6);
   EXPECT_EQ(error(), 0);
   const auto chart = [&](size_t i) {
     return room->atlas.chart[room->map.texels[i].triangle_number];
@@ -120,7 +123,7 @@ TEST(TexelError, IsThatOfLightBetweenTexels) {
   }
   ASSERT_LT(inner, n);
   light[inner] = {2, 2, 2};
-  EXPECT_NEAR(error(), 5 * std::sqrt(1.0 / 9 + 4.0 / 144) / double(n + 1), 1e-6);
+  EXPECT_NEAR(error(), std::sqrt(6.9 * (1.0 / 9 + 4.0 / 144)) / (0.25 * double(n)), 1e-6);
 }
 
 // To 0.0392 = 1.96 x 0.02 with lamps as sure as the rest, each part may have a standard error of

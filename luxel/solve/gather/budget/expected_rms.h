@@ -19,8 +19,11 @@ struct SafeVariances {
 /// Mean square errors over the square of the mean luminance, of elements that no solid hides.
 struct ExpectedSquares {
   double noise = 0, texels = 0;
+  double shared_of_noise = 0;  ///< the part of the noise that bounces have carried to all elements
 
   double rms() const { return std::sqrt(noise + texels); }
+  /// What light gathered anew from the same light errs by, too.
+  double rms_of_gathered_light() const { return std::sqrt(shared_of_noise * noise + texels); }
 };
 
 /// The part of pooled_variances() that is to be expected, of all elements together.

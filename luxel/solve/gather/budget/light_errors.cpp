@@ -20,8 +20,21 @@ Result<TexelError> error_of_texels(const light::TexelScene& scene, const LightTo
               read_error(*light.check, {scene.map, scene.elements, light.hits, light.behind, e},
                          progress));
   }
-  return texel_error(error_by_neighbours(scene.atlas, scene.map, scene.elements, light.hits, e),
+  return texel_error(error_by_neighbours(scene.atlas, scene.map, scene.elements, light.hits,
+                                         light.direct.irradiance, e),
                      measured);
+}
+
+/// Bounces carry noise on: the mean of the noise of n elements, whose variance is an nth of theirs,
+/// becomes `gain` times as large in all of them. In bright rooms that is most of it.
+void add_shared_noise(double gain, const TracedHits& hits, LightErrors& out) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < out.noise_variance.size(); ++i)
+    if (!is_hidden(hits, i)) sum += double(out.noise_variance[i]), count += 1;
+  if (count == 0) return;
+  const double shared = (gain * gain - 1) / count;
+  for (float& v : out.variance) v += float(shared * sum / count);
+  out.expected.noise *= 1 + shared, out.expected.shared_of_noise = shared / (1 + shared);
 }
 
 }  // namespace
@@ -53,12 +66,13 @@ Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJu
     const double off = texels.safe * double(luminance(read));
     out.variance[i] += float(off * off);
   }
-  free_memory(out.all);
-  out.all = relative_errors(out.variance, e, light.hits);
-  out.p95 = error_p95(out.all, counts);
   const double likely = texels.safe > 0 ? texels.likely / texels.safe : 0;
   out.expected =
       expected_squares(e, {out.noise_variance, out.variance, likely * likely}, light.hits);
+  add_shared_noise(texels.gain, light.hits, out);
+  free_memory(out.all);
+  out.all = relative_errors(out.variance, e, light.hits);
+  out.p95 = error_p95(out.all, counts);
   return out;
 }
 

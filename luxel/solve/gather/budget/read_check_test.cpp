@@ -88,12 +88,12 @@ TEST(ReadCheck, FindsASpotThatTexelsMiss) {
 // it as the likely value; where it is exact, it alone counts; where both are as sure, half of the
 // measured part and half of the variance: sqrt(0.02^2 + 0.04^2 / 2).
 TEST(TexelErrorOfBoth, IsTheSurerOne) {
-  EXPECT_DOUBLE_EQ(texel_error(0.04, {}).safe, 0.04);
-  EXPECT_DOUBLE_EQ(texel_error(0.04, {}).likely, 0.02);
-  EXPECT_DOUBLE_EQ(texel_error(0.04, {-0.1, 0}).safe, 0.1);
-  EXPECT_DOUBLE_EQ(texel_error(0.04, {-0.1, 0}).likely, 0.1);
-  EXPECT_NEAR(texel_error(0.04, {-0.04, 0.04}).safe, std::sqrt(0.0004 + 0.0008), 1e-12);
-  EXPECT_DOUBLE_EQ(texel_error(0, {0, 0}).safe, 0);
+  EXPECT_DOUBLE_EQ(texel_error({0.04}, {}).safe, 0.04);
+  EXPECT_DOUBLE_EQ(texel_error({0.04}, {}).likely, 0.02);
+  EXPECT_DOUBLE_EQ(texel_error({0.04}, {-0.1, 0}).safe, 0.1);
+  EXPECT_DOUBLE_EQ(texel_error({0.04}, {-0.1, 0}).likely, 0.1);
+  EXPECT_NEAR(texel_error({0.04}, {-0.04, 0.04}).safe, std::sqrt(0.0004 + 0.0008), 1e-12);
+  EXPECT_DOUBLE_EQ(texel_error({0}, {0, 0}).safe, 0);
 }
 
 // Two texels with light of 1 and 3: 0.71 of the noise's variance counts, and the given part of what

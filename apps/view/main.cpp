@@ -181,10 +181,10 @@ void print_warnings(const std::vector<std::string>& warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
-/// The second bake, if there is one.
-Result<std::optional<view::OpenedBake>> opened_beside(const Options& options) {
+/// The second bake, if there is one; one camera looks at both.
+Result<std::optional<view::OpenedBake>> opened_beside(const Options& options, DVec3 origin) {
   if (options.beside.empty()) return std::nullopt;
-  LUXEL_TRY(view::OpenedBake out, view::open_bake(options.beside));
+  LUXEL_TRY(view::OpenedBake out, view::open_bake(options.beside, origin));
   print_warnings(out.warnings);
   return out;
 }
@@ -224,7 +224,7 @@ Result<Opened> opened(const Options& options) {
     LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
     print_warnings(bake.warnings);
     out.width = bake.width, out.height = bake.height;
-    LUXEL_TRY(out.beside, opened_beside(options));
+    LUXEL_TRY(out.beside, opened_beside(options, bake.scene.origin));
     if (out.beside) bake.first.beside.emplace();
     out.make = view_window::baked_subject(std::move(bake));
   }

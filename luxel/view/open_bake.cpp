@@ -49,7 +49,8 @@ std::string light_unit_of(const scene::Scene& scene, const pipeline::BakeSetting
   return pipeline::unit_of_light(settings.scene, own, settings.outside).symbol;
 }
 
-Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
+Result<OpenedBake> open_bake(const std::filesystem::path& folder,
+                             const std::optional<DVec3>& origin) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder, ignored))
     return fail(ErrorCode::bad_input, "there is no scene and no bake named {}", folder.string());
@@ -60,7 +61,7 @@ Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
   LUXEL_TRY_STATUS(pipeline::check_has_colors(folder));
   OpenedBake out;
   out.folder = folder;
-  LUXEL_TRY(out.scene, pipeline::scene_of_bake(folder));
+  LUXEL_TRY(out.scene, pipeline::scene_of_bake(folder, origin));
   LUXEL_TRY(out.lightmaps,
             pipeline::read_pages(folder, out.scene.materials.size(), pipeline::read_lightmap));
   const nlohmann::json report = report_of(folder);

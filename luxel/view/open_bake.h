@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,9 @@ struct OpenedBake {
 /// The unit of E in a scene that is baked with these settings: the symbol of pipeline::LightUnit.
 std::string light_unit_of(const scene::Scene& scene, const pipeline::BakeSettings& settings);
 
-/// Errors: those of files; a bake without colours for its light, one whose baked.glb is broken.
-Result<OpenedBake> open_bake(const std::filesystem::path& folder);
+/// `origin`: Scene::origin; none: as the reader chooses. Errors: those of files; a bake without
+/// colours for its light, one whose baked.glb is broken.
+Result<OpenedBake> open_bake(const std::filesystem::path& folder,
+                             const std::optional<DVec3>& origin = {});
 
 }  // namespace luxel::view

@@ -29,7 +29,7 @@ TEST(ShortNumber, IsWhatAPersonWouldWrite) {
 }
 
 TEST(ShortNumber, IsReadAsTheSameFloat) {
-  RandomStream random(7, 0);
+  RandomStream random{7, 0};
   for (const double origin : {0.0, 65536.0, -5403216.0, 0.25})
     for (int k = 0; k < 1000; ++k) {
       const float value = 40 * random.next() - 20;

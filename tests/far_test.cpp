@@ -30,7 +30,7 @@ std::string room_at(DVec3 place) {
 /// Multiples of 8 m, the power of two above the room's size: subtracting one is exact.
 constexpr DVec3 kFar{1e6, -8e3, -5e6};
 
-/// The same command in a folder with room.gltf at 0, and in one with it far away.
+/// One command in a folder with room.gltf at 0, and in one with it far away.
 class FarScenes : public ::testing::Test {
  protected:
   FarScenes() {
@@ -182,7 +182,7 @@ TEST_F(FarScenes, LeaveBakesInTheWorldOfTheFile) {
   if (has_page) {
     EXPECT_TRUE(slurp(in("near", "out/view.html")) == slurp(in("far", "out/view.html")));
   }
-  // What a bake left is read with the scene that it is of.
+  // The files of a bake are read with the scene that it is of.
   const std::string from = "probe room.gltf --from out --at ";
   const auto [near, far] = printed(from + "1.5,0.1,2.5", from + "1000001.5,-7999.9,-4999997.5");
   expect_moved(near["position"], far["position"]);
@@ -223,7 +223,7 @@ TEST_F(FarScenes, HaveWorkPlanesInTheWorldOfTheFile) {
   EXPECT_EQ(rows, 12u);
 }
 
-// Of two parallel unit squares 1 m apart, by the closed form [Howell, C-11]. The table's rays make
+// Two parallel unit squares lie 1 m apart, by the closed form [Howell, C-11]. The table's rays make
 // the standard error sqrt(F (1 - F) / rays).
 TEST_F(FarScenes, ExchangeWhatNearOnesDo) {
   constexpr double kFactor = 0.19982489569838738, kRays = 1 << 18;

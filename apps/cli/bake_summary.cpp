@@ -7,7 +7,7 @@
 namespace luxel::cli {
 namespace {
 
-/// How far the light is off, as far as it is known: over the mean light, or where the most of it
+/// The error of the light, as far as it is known: over the mean light, or where the most of it
 /// lies on few texels over that of those, since a mean with the dark rest says nothing.
 std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   constexpr double kMostlyLit = 0.5;

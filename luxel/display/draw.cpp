@@ -70,7 +70,7 @@ using Behind = std::function<Rgb(Vec3)>;
 constexpr int kMostLayers = 64;
 constexpr float kLeastLeft = 1.0f / 512;
 
-/// What a ray sees, and the share of that which surfaces cover.
+/// The radiance that a ray sees, and the share of it that surfaces cover.
 struct SeenByRay {
   Rgb radiance{};
   float covered = 0;

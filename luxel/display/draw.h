@@ -44,7 +44,7 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
                           const scene::Camera& camera, const IrradianceAt& irradiance_at,
                           const DrawParams& params, Progress& progress);
 
-/// Whether there is nothing behind a scene's surfaces.
+/// True where there is nothing behind a scene's surfaces.
 bool has_void(const scene::Scene& scene);
 
 /// tone_map() of a picture of radiance; where has_void() there is kGreyOfNothing beside surfaces.

@@ -119,7 +119,7 @@ scene::Material pane(float rho, float alpha) {
   return material;
 }
 
-// Of the nearer pane a half, of the farther one a quarter of what is left, and the wall's rest. A
+// The nearer pane covers a half, the farther one a quarter of what is left, the wall all. A
 // pane that turns its back is not there.
 TEST(Draw, BlendedSurfacesCoverTheirShare) {
   scene::Scene scene;

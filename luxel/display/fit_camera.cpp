@@ -167,8 +167,8 @@ std::vector<uint8_t> under_a_roof(const Stage& stage, std::span<const trace::Ray
   return out;
 }
 
-/// What of a view is looked for: light and roofs take more rays than all else. Backs of one-sided
-/// materials are invisible but for the last.
+/// The things that a view is searched for: light and roofs take more rays than all else. Backs of
+/// one-sided materials are invisible but for the last.
 enum class LookFor : uint8_t { surfaces, all, backs };
 
 View look(const Stage& stage, const Candidate& candidate, LookFor what,

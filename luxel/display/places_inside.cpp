@@ -16,7 +16,7 @@ constexpr double kAround = 0.88, kAbove = 0.9;
 /// Light on one or two of the surfaces seen may be a leak.
 constexpr double kLit = 3.0 / kDirections;
 constexpr float kEyeLevel_m = 1.6f;
-/// Of the scene's diagonal: what is thinner is a sheet, not a room.
+/// Part of the scene's diagonal: a room that is lower is a sheet.
 constexpr float kSheet = 1e-3f;
 /// A place that sees so much of what emits lies in a lamp.
 constexpr double kInALamp = 0.9;
@@ -205,7 +205,7 @@ std::vector<PlaceInside> places_inside(const scene::Scene& scene, const trace::R
 std::vector<PlaceInside> places_in_streets(const scene::Scene& scene,
                                            const trace::RayTracer& tracer, const Glimpse& glimpse) {
   constexpr int kFewBuildings = 4, kPlaces = 48;
-  // Of the box's cells. Houses cover more of a town than trees of a garden.
+  // Parts of the box's cells. Houses cover more of a town than trees of a garden.
   constexpr double kLeastGround = 0.15, kLeastBuilt = 0.15;
   constexpr double kWalls = 0.58;  // the ground fills one half of all directions
   const Relief relief = relief_of(scene, tracer);

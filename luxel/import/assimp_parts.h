@@ -32,7 +32,7 @@ struct NodePlace {
   Mat34 world;
   DMat34 exact;
 };
-/// Of each named node.
+/// The places of named nodes.
 using NodePlaces = std::map<std::string, NodePlace>;
 
 void add_assimp_lights(const aiScene& in, const SourceFile& source, const NodePlaces& places,

@@ -331,7 +331,7 @@ TEST(FarScenes, KeepTheirPlaceInOtherUnits) {
   EXPECT_LT(length(scene::in_world(scene, box.upper) - (kPlace + DVec3{10, 2.7, 10})), 4e-6);
 }
 
-// What the file itself has rounded stays so, and is told.
+// Numbers that the file itself has rounded stay so, and a warning says it.
 TEST(FarScenes, AreToldOfVerticesThatTheFileHasRounded) {
   Gltf gltf;
   std::vector<float> places;

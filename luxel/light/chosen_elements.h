@@ -13,7 +13,7 @@ namespace luxel::light {
 
 using IsHidden = std::function<bool(size_t element)>;
 
-/// How likely each element is chosen, times the number of those that are. Half of it is as its
+/// The chance that each element is chosen, times the number of those that are. Half of it is as its
 /// variance is due, which tells most where that is right; the other half is the same for all, for
 /// what rays have missed nobody believes.
 struct Chances {

@@ -1,10 +1,10 @@
-// How near to a surface rays start and end. C++ and GLSL.
+// The distances from surfaces at which rays start and end. C++ and GLSL.
 #ifndef LUXEL_SCENE_BOTH_OFF_SURFACE_H
 #define LUXEL_SCENE_BOTH_OFF_SURFACE_H
 #include "luxel/base/both_language.h"
 BOTH_BEGIN
 
-// How far rounding may put a point off its surface [m].
+// The distance by which rounding may put a point off its surface [m].
 BOTH float rounding_m(vec3 position, float size_m) {
   // Interpolating three corners, moving them into the world and adding this errs by up to 2.6
   // roundings (2^-24) of the numbers involved, and intersecting triangles by as many. Of the
@@ -17,7 +17,7 @@ BOTH float rounding_m(vec3 position, float size_m) {
   return part * max(max(abs(position.x), max(abs(position.y), abs(position.z))), size_m);
 }
 
-// How far a shadow ray goes to a lamp [m]: it ends a little before it, so that a surface that the
+// The length of a shadow ray to a lamp [m]: it ends a little before it, so that a surface that the
 // lamp lies in, or a hair behind, does not hide it.
 BOTH float reach_of_shadow_ray(float distance_m, vec3 lamp) {
   return max(0.0f, distance_m - max(1e-4f * distance_m, 4 * rounding_m(lamp, 0)));

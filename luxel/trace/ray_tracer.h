@@ -83,8 +83,8 @@ class RayTracer {
   /// nearby origins and directions next to each other run faster. Sizes are equal.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
                     Packets packets = Packets::any) const;
-  /// The same without chance: what covers anything of what lies behind it, as far as that is so
-  /// (scene::Passage), stops every ray.
+  /// As above, but without chance: what covers anything of what lies behind it, as far as that is
+  /// so (scene::Passage), stops every ray.
   void closest_covers(std::span<const Ray> rays, std::span<Hit> hits,
                       Packets packets = Packets::any) const;
   /// What one ray meets first. Many rays are faster in closest_hits().

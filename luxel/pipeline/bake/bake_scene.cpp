@@ -209,7 +209,7 @@ Status encode_lightmaps(Team* team, Bake& bake, Progress& progress) {
   return {};
 }
 
-/// Whether the texel at a place lies inside of something.
+/// True where the texel at a place lies inside of something.
 bool is_hidden_at(const Bake& bake, const scene::SurfacePoint& p) {
   if (bake.light.hidden.empty()) return false;
   const auto& corners = bake.atlas.corners[bake.atlas.triangle_number(p.instance, p.triangle)];

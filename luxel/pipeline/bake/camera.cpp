@@ -68,7 +68,7 @@ bool is_flat(const scene::Scene& scene, std::span<const trace::Hit> hits) {
 std::string why_blind(const scene::Scene& scene, const scene::Camera& camera, Outlook outlook) {
   constexpr float kArm_m = 0.75f;
   constexpr double kNearlyAll = 0.9;
-  // Of the scene's diagonal: cameras close to small things, and to walls of rooms.
+  // Parts of the scene's diagonal: cameras close to small things, and to walls of rooms.
   constexpr float kTooNear = 0.02f, kBeforeAWall = 0.1f;
   std::vector<trace::Hit>& seen = outlook.seen;
   const size_t rays = seen.size();

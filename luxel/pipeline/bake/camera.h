@@ -31,7 +31,7 @@ std::string viewpoint_names();
 /// `file` is what messages call the scene.
 Status check_view(const std::string& view, const scene::Scene& scene, const std::string& file);
 
-/// What the rays of a coarse grid meet, first of all and when the backs of one-sided materials are
+/// The hits of a coarse grid of rays: first of all, and when the backs of one-sided materials are
 /// invisible.
 struct Outlook {
   std::vector<trace::Hit> first, seen;

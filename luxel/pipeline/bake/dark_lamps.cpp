@@ -28,13 +28,13 @@ Vec3 lamp_ray(const scene::PunctualLight& lamp, uint32_t k) {
   return frame_around(lamp.direction).to_world({d.x * stretch, d.y * stretch, height});
 }
 
-/// Whether the back of a place has light: its own, or that of its front.
+/// True where the back of a place has light: its own, or that of its front.
 bool has_lit_back(const scene::Scene& scene, const scene::SurfacePoint& p) {
   return scene::reflects_from_behind(scene::material_at(scene, p)) ||
          scene::other_side_of(scene, p).has_value();
 }
 
-/// Whether a lamp lights a place, as the solvers would have it.
+/// True where a lamp lights a place, as the solvers would have it.
 bool is_lit_by(const scene::PunctualLight& lamp, const scene::Scene& scene,
                const trace::RayTracer& tracer, const scene::SurfacePoint& p) {
   Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);

@@ -43,7 +43,7 @@ Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
   return out;
 }
 
-/// What light errs by, as its answers tell; nothing where it has none, or no light.
+/// The error of light, as its answers tell; nothing where it has none, or no light.
 std::optional<double> error_by_answers(const TexelLight& light) {
   double sum = 0, count = 0;
   for (size_t i = 0; i < light.irradiance.size(); ++i)

@@ -1,4 +1,4 @@
-// What follows the solver: leaks repaired, seams stitched, lightmaps made.
+// The steps after the solver: leaks repaired, seams stitched, lightmaps made.
 #pragma once
 
 #include "luxel/pipeline/bake/bake_scene.h"

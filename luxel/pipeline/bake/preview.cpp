@@ -24,7 +24,7 @@ bool is_unseen_back(const scene::Scene& scene, const trace::Hit& hit) {
   return hit.found() && hit.back_face && !scene::material_at(scene, hit.point()).double_sided;
 }
 
-/// Whether no surface in a picture has light; not where the sky shows beside it.
+/// True where no surface in a picture has light; not where the sky shows beside it.
 bool is_dark(const image::Image& picture) {
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
@@ -51,7 +51,7 @@ float shown_exposure(const scene::Scene& scene, const image::Image& picture,
              : exposure;
 }
 
-/// What is there instead of fronts.
+/// Backs that a picture shows instead of fronts.
 struct Backs {
   bool instead = false;   ///< of fronts, of which there are none, or black ones behind the backs
   uint32_t instance = 0;  ///< that shows most of them
@@ -90,7 +90,7 @@ display::SeenAt hatched(const scene::Scene& scene, const trace::CameraRays& rays
   };
 }
 
-/// Whether nearly all of a picture has one value: "white", "black", "one colour"; empty: not.
+/// The one value that nearly all of a picture has: "white", "black", "one colour"; empty: not.
 std::string plain_colour(const image::Image8& picture) {
   constexpr int kNoise = 4;
   constexpr double kNearlyAll = 0.995;
@@ -114,7 +114,7 @@ std::string of_instance(const scene::Scene& scene, uint32_t i) {
   return name.empty() ? fmt::format("instance {}", i) : fmt::format("'{}'", name);
 }
 
-/// What the picture shows instead of a scene in the light; empty: it shows one.
+/// A sentence on a picture that shows no scene in the light; empty: it shows one.
 std::string about_preview(const Bake& bake, const Outlook& outlook, const Backs& backs,
                           const image::Image& picture) {
   const scene::Scene& scene = bake.scene;

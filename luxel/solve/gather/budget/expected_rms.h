@@ -22,7 +22,7 @@ struct ExpectedSquares {
   double shared_of_noise = 0;  ///< the part of the noise that bounces have carried to all elements
 
   double rms() const { return std::sqrt(noise + texels); }
-  /// What light gathered anew from the same light errs by, too.
+  /// Light gathered anew from the same light has this error, too.
   double rms_of_gathered_light() const { return std::sqrt(shared_of_noise * noise + texels); }
 };
 

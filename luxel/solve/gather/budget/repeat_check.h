@@ -54,7 +54,7 @@ Result<TrueNoise> noise_by_repeating(const light::TexelScene& in, const transpor
 
 /// Two answers for some hundred elements, more precise than their light: they cost a fiftieth of
 /// its rays, or what 128 elements take. Direct light is averaged over texels, where it is anywhere.
-/// What rays read is `light.irradiance`, after all bounces. No `enclosed` elements are asked.
+/// Rays read `light.irradiance`, after all bounces. No `enclosed` elements are asked.
 /// Errors: cancelled, disk full.
 Result<light::Answers> answers_by_repeating(const light::TexelScene& in,
                                             const transport::OwnSides& sides,

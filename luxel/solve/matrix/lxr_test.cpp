@@ -244,24 +244,8 @@ RelightData lifted(RelightData data) {
   return data;
 }
 
-/// A file of an earlier minor version, which lacks the last chunks.
-Bytes of_earlier(uint16_t minor, std::initializer_list<std::string_view> lacking) {
-  Bytes file = encode_lxr(small_data());
-  for (const std::string_view tag : lacking) {
-    size_t at = 32, last = 32;
-    for (; at < file.size(); at += 16 + size_t(testing::value_at<uint64_t>(file, at + 8)))
-      last = at;
-    EXPECT_EQ(std::memcmp(file.data() + last + 4, tag.data(), 4), 0) << tag;
-    file.resize(last);
-    testing::put_at(file, 12, testing::value_at<uint32_t>(file, 12) - 1);
-  }
-  testing::put_at(file, 10, minor);
-  testing::mend(file);
-  return file;
-}
-
 TEST(Lxr, LiftsThePlacesOfVersion11) {
-  const Bytes file = of_earlier(1, {"ORIG"});
+  const Bytes file = testing::of_earlier(encode_lxr(small_data()), 1, {"ORIG"});
   const auto back = decode_lxr(file, "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   expect_same(*back, lifted(small_data()));
@@ -269,7 +253,7 @@ TEST(Lxr, LiftsThePlacesOfVersion11) {
 
 TEST(Lxr, ReadsVersion10) {
   RelightData data = small_data();
-  const Bytes file = of_earlier(0, {"ORIG", "GLOW"});
+  const Bytes file = testing::of_earlier(encode_lxr(small_data()), 0, {"ORIG", "GLOW"});
   const auto back = decode_lxr(file, "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   data.glow = {}, data.usual_codec_error = data.baked_error = data.lamp_error = 0;

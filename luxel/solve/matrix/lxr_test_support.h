@@ -46,6 +46,21 @@ inline void mend(Bytes& file) {
   }
 }
 
+/// A file as an earlier minor version wrote it, which lacks the last chunks.
+inline Bytes of_earlier(Bytes file, uint16_t minor,
+                        std::initializer_list<std::string_view> lacking) {
+  for (const std::string_view tag : lacking) {
+    size_t at = 32, last = 32;
+    for (; at < file.size(); at += 16 + size_t(value_at<uint64_t>(file, at + 8))) last = at;
+    EXPECT_EQ(std::memcmp(file.data() + last + 4, tag.data(), 4), 0) << tag;
+    file.resize(last);
+    put_at(file, 12, value_at<uint32_t>(file, 12) - 1);
+  }
+  put_at(file, 10, minor);
+  mend(file);
+  return file;
+}
+
 inline void append_chunk(Bytes& file, std::string_view tag, const Bytes& content) {
   const size_t start = file.size();
   file.resize(start + 16 + (content.size() + 7) / 8 * 8);

@@ -243,7 +243,8 @@ TEST_F(DirectLightTest, SmoothSurfacesAndMirroredInstances) {
 // The sum over a picture: leaves are smaller than what is_within() looks at.
 TEST_F(DirectLightTest, HolesOfMasksLetLightThrough) {
   scene::Scene scene = scene::foliage();
-  scene.background = {}, scene.environment = {};
+  scene.environment = {};
+  scene.background = {1e-9f, 1e-9f, 1e-9f};  // black: without one there would be grey
   const std::array lamps{lamp_of(Kind::directional, {}, {0.3f, -1, 0.2f})};
   double light[2] = {};
   for (const bool has_holes : {true, false}) {

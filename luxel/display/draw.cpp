@@ -65,9 +65,7 @@ std::vector<uint32_t> take_differing(const image::Image& picture, std::span<cons
 /// What is seen in a direction in which there is no surface.
 using Behind = std::function<Rgb(Vec3)>;
 
-/// Surfaces that a ray goes through, at most, and the share of what it sees that lies behind them
-/// below which nothing more is looked for.
-constexpr int kMostLayers = 64;
+/// The share of what a ray sees that lies behind surfaces, below which nothing more is looked for.
 constexpr float kLeastLeft = 1.0f / 512;
 
 /// The radiance that a ray sees, and the share of it that surfaces cover.
@@ -86,7 +84,7 @@ std::vector<SeenByRay> seen_along(const scene::Scene& scene, const trace::RayTra
   std::vector<size_t> of(rays.size());  // those that rays still look for
   std::iota(of.begin(), of.end(), 0);
   std::vector<trace::Hit> hits(rays.size());
-  for (int layer = 0; layer < kMostLayers && !rays.empty(); ++layer) {
+  for (int layer = 0; layer < trace::kMostSurfaces && !rays.empty(); ++layer) {
     hits.resize(rays.size());
     tracer.closest_covers(rays, hits, layer == 0 ? trace::Packets::bundles : trace::Packets::any);
     size_t open = 0;
@@ -94,15 +92,14 @@ std::vector<SeenByRay> seen_along(const scene::Scene& scene, const trace::RayTra
       const trace::Hit& hit = hits[k];
       const size_t i = of[k];
       if (!hit.found()) continue;
-      if (backs || !hit.back_face || material_at(scene, hit.point()).double_sided) {
+      if (backs || !trace::is_unseen_back(scene, hit)) {
         const float coverage = scene::passage_at(scene, hit.point()).coverage;
         out[i].radiance += seen_at(hit) * (left[i] * coverage);
         left[i] *= 1 - coverage;
         if (left[i] < kLeastLeft) left[i] = 0;
         if (left[i] == 0) continue;
       }
-      // Just behind the hit, by more than the rounding of t between packets and single rays.
-      rays[k].t_min = std::max(hit.t * (1 + 4e-7f), 1e-20f);
+      trace::go_on_behind(hit, rays[k]);
       rays[open] = rays[k], of[open] = i, ++open;
     }
     rays.resize(open), of.resize(open);

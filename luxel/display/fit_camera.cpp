@@ -288,7 +288,7 @@ scene::Camera best_of(const Stage& stage, std::span<const Candidate> candidates)
   std::iota(order.begin(), order.end(), 0u);
   const std::vector<double> most = scores_of(stage, candidates, order, LookFor::surfaces);
   if (std::ranges::max(most) <= 0) {
-    // Nobody can see a front of what is flipped, but can be told so of a picture of its backs.
+    // The fronts of flipped surfaces are seen from nowhere; a picture of their backs says so.
     const std::vector<double> backs = scores_of(stage, candidates, order, LookFor::backs);
     return candidates[size_t(std::ranges::max_element(backs) - backs.begin())].camera;
   }

@@ -263,7 +263,7 @@ TEST(FitCamera, NeverStandsInALamp) {
   EXPECT_FALSE(from_inside(scene));
 }
 
-// Nobody sees the front of a floor that was wound upside down: the picture is of its back, from
+// The front of a floor that was wound upside down is not seen: the picture is of its back, from
 // where all of it is seen.
 TEST(FitCamera, LooksAtBacksWhereThereAreNoFronts) {
   Scene scene;

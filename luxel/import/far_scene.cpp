@@ -57,6 +57,10 @@ void move_meshes(double scene_size, const std::string& file, scene::Scene& scene
   }
 }
 
+void move_to(DVec3 place, Mat34& m) {
+  m.row[0][3] = float(place.x), m.row[1][3] = float(place.y), m.row[2][3] = float(place.z);
+}
+
 }  // namespace
 
 DMat34 as_stated(const Mat34& m) {
@@ -109,18 +113,13 @@ std::vector<std::string> move_towards_origin(const ExactPlaces& exact,
         "read has steps of {:.2g} m: places are rounded to that; move the scene nearer to the "
         "origin, or export it as glTF",
         file, exact.read_step_m));
-  for (size_t i = 0; i < scene.instances.size(); ++i) {
-    Mat34& m = scene.instances[i].world_from_object;
-    const DVec3 at = transform_point(exact.instances[i], shifts[scene.instances[i].mesh]) - origin;
-    m.row[0][3] = float(at.x), m.row[1][3] = float(at.y), m.row[2][3] = float(at.z);
-  }
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    move_to(transform_point(exact.instances[i], shifts[scene.instances[i].mesh]) - origin,
+            scene.instances[i].world_from_object);
   for (size_t i = 0; i < scene.lights.size(); ++i)
     scene.lights[i].position = to_float(exact.lights[i] - origin);
-  for (size_t i = 0; i < scene.cameras.size(); ++i) {
-    Mat34& m = scene.cameras[i].world_from_camera;
-    const DVec3 at = exact.cameras[i] - origin;
-    m.row[0][3] = float(at.x), m.row[1][3] = float(at.y), m.row[2][3] = float(at.z);
-  }
+  for (size_t i = 0; i < scene.cameras.size(); ++i)
+    move_to(exact.cameras[i] - origin, scene.cameras[i].world_from_camera);
   scene.origin = origin;
   return told;
 }

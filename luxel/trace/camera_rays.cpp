@@ -5,15 +5,6 @@
 #include "luxel/base/check.h"
 
 namespace luxel::trace {
-namespace {
-
-constexpr int kMaxSurfaces = 64;
-
-bool invisible(const scene::Scene& scene, const Hit& hit) {
-  return hit.found() && hit.back_face && !material_at(scene, hit.point()).double_sided;
-}
-
-}  // namespace
 
 float half_height(const scene::Camera& camera, float aspect) {
   const float own = camera.orthographic_height_m > 0 ? 0.5f * camera.orthographic_height_m
@@ -58,21 +49,29 @@ bool faces(const CameraRays& camera, Vec3 place, Vec3 normal) {
          std::abs(dot(to_place, camera.up)) <= reach * dot(camera.up, camera.up);
 }
 
+bool is_unseen_back(const scene::Scene& scene, const Hit& hit) {
+  return hit.found() && hit.back_face && !material_at(scene, hit.point()).double_sided;
+}
+
+void go_on_behind(const Hit& hit, Ray& ray) {
+  // By more than the rounding of t between packets and single rays.
+  ray.t_min = std::max(hit.t * (1 + 4e-7f), 1e-20f);
+}
+
 std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
                               std::span<Ray> rays) {
   std::vector<Hit> hits(rays.size());
   tracer.closest_hits(rays, hits, Packets::bundles);
   std::vector<size_t> open;
   for (size_t i = 0; i < hits.size(); ++i)
-    if (invisible(scene, hits[i])) open.push_back(i);
+    if (is_unseen_back(scene, hits[i])) open.push_back(i);
 
   std::vector<Ray> on;
   std::vector<Hit> next;
-  for (int step = 1; step < kMaxSurfaces && !open.empty(); ++step) {
+  for (int step = 1; step < kMostSurfaces && !open.empty(); ++step) {
     on.clear();
     for (const size_t i : open) {
-      // Just behind the hit, by more than the rounding of t between packets and single rays.
-      rays[i].t_min = std::max(hits[i].t * (1 + 4e-7f), 1e-20f);
+      go_on_behind(hits[i], rays[i]);
       on.push_back(rays[i]);
     }
     next.resize(on.size());
@@ -80,7 +79,7 @@ std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer
     std::vector<size_t> still_open;
     for (size_t k = 0; k < open.size(); ++k) {
       hits[open[k]] = next[k];
-      if (invisible(scene, next[k])) still_open.push_back(open[k]);
+      if (is_unseen_back(scene, next[k])) still_open.push_back(open[k]);
     }
     open = std::move(still_open);
   }

@@ -32,8 +32,17 @@ struct CameraRays {
 /// Whether a place lies in the picture and its front turns to the eye, whatever stands before it.
 bool faces(const CameraRays& camera, Vec3 place, Vec3 normal);
 
+/// Surfaces that rays of a picture go through, at most.
+inline constexpr int kMostSurfaces = 64;
+
+/// True of the back of a one-sided material, which nobody sees.
+bool is_unseen_back(const scene::Scene& scene, const Hit& hit);
+
+/// Lets a ray begin just behind a hit.
+void go_on_behind(const Hit& hit, Ray& ray);
+
 /// What each ray meets first when the back faces of one-sided materials are invisible. Such a ray
-/// goes on behind the hit, through 64 surfaces at most; `rays` is left where it got to.
+/// goes on behind the hit, through kMostSurfaces; `rays` is left where it got to.
 std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
                               std::span<Ray> rays);
 

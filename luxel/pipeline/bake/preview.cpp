@@ -20,10 +20,6 @@ constexpr int kPreviewHeight = 720;
 /// Exposed; the curve of the screen leaves it as it is.
 constexpr float kBacksShownAt = 0.35f;
 
-bool is_unseen_back(const scene::Scene& scene, const trace::Hit& hit) {
-  return hit.found() && hit.back_face && !scene::material_at(scene, hit.point()).double_sided;
-}
-
 /// True where no surface in a picture has light; not where the sky shows beside it.
 bool is_dark(const image::Image& picture) {
   for (int y = 0; y < picture.height; ++y)
@@ -62,7 +58,7 @@ Backs backs_in(const scene::Scene& scene, const Outlook& outlook, const image::I
   std::vector<uint32_t> seen(scene.instances.size());
   size_t backs = 0;
   for (const trace::Hit& hit : outlook.first)
-    if (is_unseen_back(scene, hit)) ++seen[hit.instance], ++backs;
+    if (trace::is_unseen_back(scene, hit)) ++seen[hit.instance], ++backs;
   const auto surfaces = double(std::ranges::count_if(outlook.first, &trace::Hit::found));
   const auto fronts = double(std::ranges::count_if(outlook.seen, &trace::Hit::found));
   Backs out;
@@ -78,7 +74,7 @@ display::SeenAt hatched(const scene::Scene& scene, const trace::CameraRays& rays
                         const display::SeenAt& fronts) {
   constexpr float kStripe = 6;  // pixels
   return [&scene, rays, exposure, fronts](const trace::Hit& hit) {
-    if (!is_unseen_back(scene, hit)) return fronts(hit);
+    if (!trace::is_unseen_back(scene, hit)) return fronts(hit);
     const Vec3 place = scene::world_position(scene, hit.point());
     const Vec2 pixel = rays.pixel_of(place);
     const Vec3 towards = rays.orthographic ? rays.forward : normalize(place - rays.eye);

@@ -8,8 +8,6 @@
 namespace luxel::view {
 namespace {
 
-constexpr int kMostSurfaces = 64;       ///< behind one another, as visible_hits()
-constexpr float kBeyond = 1 + 4e-7f;    ///< a ray goes on behind a hit from here
 constexpr float kLeastVolume = 1e-30f;  ///< of a triangle and a ray beside it
 
 /// World from object the other way round: for vectors of the world that become those of an object.
@@ -68,10 +66,10 @@ void try_moved(const EditDesk& desk, uint32_t instance, trace::Ray ray, trace::H
 /// What a ray meets of instances that are where they were.
 trace::Hit unmoved_hit(const EditDesk& desk, const trace::Ray& ray) {
   std::array rays{ray};
-  for (int step = 0; step < kMostSurfaces; ++step) {
+  for (int step = 0; step < trace::kMostSurfaces; ++step) {
     const trace::Hit hit = trace::visible_hits(desk.read->scene, *desk.read->tracer, rays).front();
     if (!hit.found() || !has_moved(desk, hit.instance)) return hit;
-    rays[0].t_min = hit.t * kBeyond;
+    trace::go_on_behind(hit, rays[0]);
   }
   return {};
 }

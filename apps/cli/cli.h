@@ -47,6 +47,9 @@ CLI::Validator whole_number(uint64_t most = UINT64_MAX);
 /// "x,y,z".
 Result<DVec3> parse_point(const char* option, const std::string& text);
 
+/// [x, y, z], as --json has places.
+inline nlohmann::json point_json(DVec3 p) { return {p.x, p.y, p.z}; }
+
 /// Prints the error's sentence to stderr, or an event of --progress-json, and, with --json, an
 /// object with it to stdout. Returns its exit code.
 int report(const Error& error, const Common& common);

@@ -34,10 +34,6 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
     }
   }
   const Box3 box = scene::world_bounds(scene);
-  const auto in_world = [&](Vec3 p) {
-    const DVec3 at = scene::in_world(scene, p);
-    return nlohmann::json{at.x, at.y, at.z};
-  };
   return {{"triangles", drawn},
           {"triangles_stored", stored},
           {"emissive_triangles", emissive},
@@ -48,8 +44,10 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
           {"lights", scene.lights.size()},
           {"cameras", scene.cameras.size()},
           {"area_m2", area},
-          {"bounds", {in_world(box.lower), in_world(box.upper)}},
-          {"origin", {scene.origin.x, scene.origin.y, scene.origin.z}},
+          {"bounds",
+           {point_json(scene::in_world(scene, box.lower)),
+            point_json(scene::in_world(scene, box.upper))}},
+          {"origin", point_json(scene.origin)},
           {"has_texcoord_1", uv1},
           {"warnings", warnings}};
 }

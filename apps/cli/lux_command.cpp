@@ -19,12 +19,6 @@ struct LuxOptions {
   pipeline::LuxSettings settings;
 };
 
-/// A place of a scene with this origin, in the world of its file.
-nlohmann::json point_json(Vec3 p, DVec3 origin) {
-  const DVec3 at = scene::in_world(origin, p);
-  return {at.x, at.y, at.z};
-}
-
 nlohmann::json json_of(const pipeline::RoomLight& room, DVec3 origin) {
   return {{"points", room.points},
           {"area_m2", room.area_m2},
@@ -34,8 +28,8 @@ nlohmann::json json_of(const pipeline::RoomLight& room, DVec3 origin) {
           {"uniformity", room.uniformity()},
           {"standard_error_of_mean", room.standard_error},
           {"largest_standard_error", room.largest_error},
-          {"minimum_at", point_json(room.minimum_at, origin)},
-          {"maximum_at", point_json(room.maximum_at, origin)}};
+          {"minimum_at", point_json(scene::in_world(origin, room.minimum_at))},
+          {"maximum_at", point_json(scene::in_world(origin, room.maximum_at))}};
 }
 
 nlohmann::json json_of(const pipeline::LuxSettings& s, const pipeline::LuxReport& report) {

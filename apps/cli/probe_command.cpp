@@ -52,7 +52,7 @@ nlohmann::json json_of(const pipeline::Probed& p) {
   nlohmann::json json{
       {"surface", p.name},
       {"material", p.material},
-      {"position", {p.position.x, p.position.y, p.position.z}},
+      {"position", point_json(p.position)},
       {"normal", rgb_json(p.normal)},
       {"distance_m", p.distance_m},
       {"irradiance", rgb_json(p.irradiance)},

@@ -7,6 +7,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
 #include "luxel/light/supersample.h"
+#include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/post/denoise.h"
 
 namespace luxel::pipeline {
@@ -45,12 +46,10 @@ Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
 
 /// The error of light, as its answers tell; nothing where it has none, or no light.
 std::optional<double> error_by_answers(const TexelLight& light) {
-  double sum = 0, count = 0;
-  for (size_t i = 0; i < light.irradiance.size(); ++i)
-    if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
-  if (light.answers.elements.empty() || !(sum > 0)) return std::nullopt;
+  const double mean = mean_light(light);
+  if (light.answers.elements.empty() || !(mean > 0)) return std::nullopt;
   const double square = light::square_error(light.answers, light.irradiance).mean;
-  return std::hypot(std::sqrt(std::max(0.0, square)) * count / sum, light.relative_unseen);
+  return std::hypot(std::sqrt(std::max(0.0, square)) / mean, light.relative_unseen);
 }
 
 }  // namespace

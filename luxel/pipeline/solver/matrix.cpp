@@ -10,6 +10,7 @@
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
+#include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/transport/back_faces.h"
 
@@ -18,14 +19,6 @@ namespace {
 
 /// Rays of a patch are counted in 16 bits.
 constexpr double kMaxRays = 65535;
-
-/// Mean luminance of texels that are not hidden.
-double mean_light(const TexelLight& light) {
-  double sum = 0, count = 0;
-  for (size_t i = 0; i < light.irradiance.size(); ++i)
-    if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
-  return count > 0 ? sum / count : 0;
-}
 
 /// Radiosity of the patch that a ray meets.
 Rgb patch_radiosity(const light::TexelScene& in, const matrix::PatchedScene& patched,

@@ -95,6 +95,40 @@ TEST(BadInput, RangesPastTheirEnd) {
   EXPECT_THAT(error_with("/accessors/0/sparse", {{"count", 1}}), HasSubstr("sparse"));
 }
 
+// tinygltf would read 0, or nothing. 2^31 - 1 is the last number that it can hold.
+TEST(BadInput, MembersOfAnotherKindAreNamed) {
+  const auto place = [](nlohmann::json offset) {
+    return nlohmann::json{
+        {"count", 1},
+        {"indices", {{"bufferView", 0}, {"byteOffset", 0}, {"componentType", 5121}}},
+        {"values", {{"bufferView", 0}, {"byteOffset", std::move(offset)}}}};
+  };
+  EXPECT_THAT(error_with("/accessors/0/sparse", place(0x80000000)),
+              HasSubstr("accessors/0/sparse/values/byteOffset is 2147483648, must be a whole"));
+  EXPECT_THAT(error_with("/accessors/0/sparse", place("4")), HasSubstr("is \"4\", must be"));
+  EXPECT_THAT(error_with("/nodes/0/matrix", {1, 2, 3}),
+              HasSubstr("nodes/0/matrix is [1,2,3], must be a list of 16 numbers"));
+  EXPECT_THAT(error_with("/materials/0/emissiveFactor", "x"),
+              HasSubstr("emissiveFactor is \"x\", must be a list of 3 numbers"));
+  EXPECT_THAT(error_with("/meshes/0/primitives/0/mode", 0x100000004),
+              HasSubstr("mode is 4294967300"));
+  EXPECT_THAT(error_with("/asset/minVersion", "99"), HasSubstr("it needs glTF 99"));
+}
+
+// JavaScript and Python write whole numbers so.
+TEST(BadInput, WholeNumbersMayHaveADecimalPoint) {
+  Gltf gltf = square_gltf();
+  const scene::Scene plain = scene_of(import_glb(gltf));
+  for (const char* list : {"accessors", "bufferViews"})
+    for (auto& object : gltf.json[list])
+      for (auto& item : object.items())
+        if (item.value().is_number()) item.value() = item.value().get<double>();
+  const scene::Scene scene = scene_of(import_glb(gltf));
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].positions, plain.meshes[0].positions);
+  EXPECT_EQ(scene.meshes[0].triangles, plain.meshes[0].triangles);
+}
+
 TEST(BadInput, NotFiniteVerticesNameMeshAndVertex) {
   for (const float bad : {NAN, INFINITY, -INFINITY}) {
     Gltf gltf = square_gltf();

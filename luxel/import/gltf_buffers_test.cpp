@@ -59,7 +59,7 @@ TEST(Gltf, EveryBufferStatesItsLength) {
   EXPECT_EQ(error_with({{"byteLength", 3}}), "no error");
   EXPECT_THAT(error_with(nlohmann::json::object()), HasSubstr("buffer 1: it has no byteLength"));
   EXPECT_THAT(error_with({{"byteLength", "three"}}),
-              HasSubstr("buffer 1: byteLength is \"three\", must be a whole number from 0 on"));
+              HasSubstr("buffers/1/byteLength is \"three\", must be a whole number from 0 on"));
 }
 
 }  // namespace

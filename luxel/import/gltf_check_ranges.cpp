@@ -133,7 +133,6 @@ Result<uint64_t> whole_number(const Json& object, const char* key, uint64_t fall
     if (fallback == UINT64_MAX) return fail(ErrorCode::bad_input, "{}: it has no {}", where, key);
     return fallback;
   }
-  // Exporters written in JavaScript or Python may write 12.0.
   const double number = value->is_number() ? value->get<double>() : -1.0;
   if (!(number >= 0) || number > 0x1p53 || number != std::floor(number))
     return fail(ErrorCode::bad_input, "{}: {} is {}, must be a whole number from 0 on", where, key,

@@ -18,6 +18,9 @@ using Json = nlohmann::json;
 Status check_lists(const Json& document, const std::string& file);
 /// Every index points at something.
 Status check_indices(const Json& document, const std::string& file);
+/// Members are of the kind that glTF gives them, and whole numbers fit an int where tinygltf holds
+/// them in one. Errors name the member by its path: "nodes/3/matrix is [1,2,3], must be ...".
+Status check_members(const Json& document, const std::string& file);
 /// Views lie in their buffers, accessors in their views.
 Status check_ranges(const Json& document, const std::string& file);
 /// EXT_ and KHR_meshopt_compression: see meshopt_view_of(); no picture lies in a compressed view,

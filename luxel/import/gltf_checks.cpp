@@ -67,6 +67,10 @@ Status check_version(const Json& document, const std::string& file) {
   if (version.rfind("2.", 0) != 0)
     return fail(ErrorCode::unsupported, "{}: it is glTF {}; only glTF 2 can be read", file,
                 version);
+  const auto least = asset->find("minVersion");
+  if (least != asset->end() && least->is_string() && *least != "2.0")
+    return fail(ErrorCode::unsupported, "{}: it needs glTF {}; only glTF 2.0 can be read", file,
+                least->get<std::string>());
   return {};
 }
 
@@ -181,6 +185,7 @@ Status check_document(const Json& document, const std::string& file) {
   LUXEL_TRY_STATUS(check_required_extensions(document, file));
   LUXEL_TRY_STATUS(check_lists(document, file));
   LUXEL_TRY_STATUS(check_indices(document, file));
+  LUXEL_TRY_STATUS(check_members(document, file));
   LUXEL_TRY_STATUS(check_ranges(document, file));
   LUXEL_TRY_STATUS(check_meshopt(document, file));
   LUXEL_TRY_STATUS(check_draco(document, file));

@@ -20,10 +20,15 @@ std::vector<std::byte> glb_with_json(std::span<const std::byte> bytes, std::stri
 /// Parses the text. Errors: not JSON (says where), not an object, nested too deep for recursion.
 Result<nlohmann::json> parse_json(const std::string& text, const std::string& file);
 
+/// Makes 12 of 12.0 where a whole number must stand: exporters written in JavaScript or Python
+/// write so, and tinygltf would read 0. Returns true where it has changed something.
+bool make_whole(nlohmann::json& document);
+
 /// Errors: not glTF 2, a required extension that is not supported (named), lists that are not
-/// lists, an index that points nowhere (names its holder), buffer views past their buffer,
-/// accessors past their view, compressed parts that contradict themselves, nodes that do not form
-/// trees. tinygltf checks none of these, and some of them make it read out of bounds.
+/// lists, an index that points nowhere (names its holder), a member of the wrong kind, buffer views
+/// past their buffer, accessors past their view, compressed parts that contradict themselves, nodes
+/// that do not form trees. tinygltf checks none of these, and some of them make it read out of
+/// bounds.
 Status check_document(const nlohmann::json& document, const std::string& file);
 
 /// Extensions that a file uses without requiring them, whose loss changes the light.

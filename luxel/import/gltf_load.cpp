@@ -111,6 +111,7 @@ Json take(Json& document, const char* key) {
 Result<LoadedGltf> load_gltf(const SourceFile& source) {
   LUXEL_TRY(std::string text, json_text_of(source));
   LUXEL_TRY(Json document, parse_json(text, source.name));
+  const bool was_changed = make_whole(document);
   LUXEL_TRY_STATUS(check_document(document, source.name));
 
   const std::vector<bool> is_placeholder = placeholder_buffers(document);
@@ -120,7 +121,8 @@ Result<LoadedGltf> load_gltf(const SourceFile& source) {
     // A scene may have a million nodes, a kilobyte each here and once more in tinygltf, which is
     // the only one to read them: none are left when it begins.
     Json nodes = take(document, "nodes");
-    if (Json adapted = for_tinygltf(document, is_placeholder, source.files); adapted != document) {
+    Json adapted = for_tinygltf(document, is_placeholder, source.files);
+    if (was_changed || adapted != document) {
       if (!nodes.is_null()) adapted["nodes"] = std::move(nodes);
       text = adapted.dump();
       if (source.extension == ".glb") glb = new_glb = glb_with_json(source.bytes, text);

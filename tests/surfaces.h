@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <tuple>
@@ -48,6 +49,29 @@ inline void expect_closed(const std::vector<scene::Triangle3>& triangles) {
     ASSERT_EQ(count, 1);
     ASSERT_EQ(edges.count({edge.second, edge.first}), 1u);
   }
+}
+
+/// Vertices, by position, in the midst of an edge of some triangle, within a millionth of the
+/// scene's diagonal.
+inline size_t count_t_junctions(const std::vector<scene::Triangle3>& triangles) {
+  Box3 box;
+  for (const scene::Triangle3& t : triangles) box.extend(t.a), box.extend(t.b), box.extend(t.c);
+  const double near = 1e-6 * double(box.diagonal());
+  std::map<std::tuple<float, float, float>, DVec3> places;
+  for (const scene::Triangle3& t : triangles)
+    for (const Vec3 p : {t.a, t.b, t.c}) places.emplace(std::tuple(p.x, p.y, p.z), to_double(p));
+  size_t count = 0;
+  for (const auto& [key, p] : places) {
+    const auto is_amidst = [&](Vec3 a, Vec3 b) {
+      const DVec3 along = to_double(b) - to_double(a), d = p - to_double(a);
+      const double edge = length(along), at = dot(d, along) / edge;
+      return at > near && at < edge - near && length(cross(d, along)) <= near * edge;
+    };
+    count += std::ranges::any_of(triangles, [&](const scene::Triangle3& t) {
+      return is_amidst(t.a, t.b) || is_amidst(t.b, t.c) || is_amidst(t.c, t.a);
+    });
+  }
+  return count;
 }
 
 /// Volume inside a closed surface by the divergence theorem; positive when it faces outwards.

@@ -1,9 +1,15 @@
 #include "luxel/atlas/cut_charts.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
 
 #include "luxel/base/check.h"
 #include "luxel/scene/cut_mesh.h"
+#include "luxel/scene/join_pieces.h"
+#include "luxel/scene/t_junctions.h"
 
 namespace luxel::atlas {
 namespace {
@@ -14,6 +20,9 @@ using Pairs = std::vector<PartedPoints>;
 constexpr double kOnPlane = 0.02;
 /// Pieces that fewer pairs connect are apart: one or two lie where barriers meet.
 constexpr size_t kFewestJoined = kFewestParted;
+/// Triangles farther than this from all pairs, in distances of a typical one, stay whole: light
+/// comes around the end of a barrier within three texels.
+constexpr double kNear = 3;
 /// More planes than these are not looked at in one piece.
 constexpr size_t kMostCandidates = 256, kMostScored = 32;
 
@@ -64,6 +73,41 @@ CutCandidate best_plane(const Pairs& pairs) {
   return best;
 }
 
+/// Where the pairs of a piece lie.
+class PairPlaces {
+ public:
+  explicit PairPlaces(const Pairs& pairs) {
+    std::vector<double> distances;
+    for (const PartedPoints& p : pairs) distances.push_back(double(length(p.b - p.a)));
+    const auto middle = distances.begin() + long(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    distance_ = *middle;
+    // One of the pairs in a cell of a grid that is finer than they are far apart speaks for all.
+    std::set<std::array<long, 3>> seen;
+    for (const PartedPoints& p : pairs) {
+      const DVec3 at = (to_double(p.a) + to_double(p.b)) * 0.5, cell = at * (1 / distance_);
+      if (seen.insert({std::lround(cell.x), std::lround(cell.y), std::lround(cell.z)}).second)
+        places_.push_back(at);
+    }
+  }
+
+  double distance() const { return distance_; }  ///< of a typical pair's points [m]
+  /// Whether some lie near a line from a to b.
+  bool is_near(DVec3 a, DVec3 b) const {
+    const DVec3 along = b - a;
+    const double length2 = dot(along, along), reach = kNear * distance_;
+    return std::ranges::any_of(places_, [&](DVec3 p) {
+      const double s = length2 > 0 ? std::clamp(dot(p - a, along) / length2, 0.0, 1.0) : 0;
+      const DVec3 d = p - (a + along * s);
+      return dot(d, d) <= reach * reach;
+    });
+  }
+
+ private:
+  double distance_ = 0;
+  std::vector<DVec3> places_;
+};
+
 /// A node of the partition of one chart. Leaves are pieces.
 struct Node {
   uint32_t piece = 0;                     ///< of a leaf: the label of its triangles
@@ -77,6 +121,8 @@ class Cutter {
   Cutter(scene::Mesh& mesh, const Mat34& world_from_object, std::vector<uint32_t> chart)
       : mesh_(mesh), world_from_object_(world_from_object), label_(std::move(chart)) {
     for (const uint32_t c : label_) next_ = std::max(next_, c + 1);
+    part_of_.resize(label_.size());
+    std::iota(part_of_.begin(), part_of_.end(), 0u);
   }
 
   /// Cuts one chart. Its triangles are labelled by piece; returns the group of each piece, as
@@ -88,6 +134,8 @@ class Cutter {
   }
 
   const std::vector<uint32_t>& labels() const { return label_; }
+  /// Per triangle, the number of the one it was a part of.
+  const std::vector<uint32_t>& part_of() const { return part_of_; }
   /// The chart that a label's triangles are of.
   uint32_t chart_of(uint32_t label) const {
     const auto found = std::ranges::find(pieces_, label, &std::pair<uint32_t, uint32_t>::first);
@@ -101,7 +149,7 @@ class Cutter {
     const CutCandidate best = best_plane(pairs);
     if (best.count < kFewestParted) return;
     const uint32_t piece = nodes_[node].piece;
-    const uint32_t other = apply(piece, best.plane, length(pairs.front().b - pairs.front().a));
+    const uint32_t other = apply(piece, best.plane, PairPlaces(pairs));
     const auto below = uint32_t(nodes_.size()), above = below + 1;
     nodes_[node].plane = best.plane, nodes_[node].below = below, nodes_[node].above = above;
     nodes_.push_back(Node{piece});
@@ -114,19 +162,39 @@ class Cutter {
     divide(above, upper);
   }
 
-  /// What lies above the plane gets a new label, which is returned.
-  uint32_t apply(uint32_t piece, const Plane& world, float reach) {
+  /// What lies above the plane gets a new label, which is returned. Triangles that are not near any
+  /// pair are not cut: they lie where most of them does.
+  uint32_t apply(uint32_t piece, const Plane& world, const PairPlaces& places) {
     const Plane plane = scene::plane_in_object(world, world_from_object_);
+    const double tolerance = kOnPlane * places.distance();
     std::vector<uint8_t> chosen(label_.size());
-    for (size_t t = 0; t < label_.size(); ++t) chosen[t] = label_[t] == piece;
-    for (const uint32_t t : scene::cut_mesh(mesh_, chosen, plane, kOnPlane * double(reach)))
-      label_.push_back(label_[t]);
+    for (size_t t = 0; t < label_.size(); ++t)
+      chosen[t] = label_[t] == piece && is_cut_near(t, plane, tolerance, places);
+    for (const uint32_t t : scene::cut_mesh(mesh_, chosen, plane, tolerance))
+      label_.push_back(label_[t]), part_of_.push_back(part_of_[t]);
     const uint32_t other = next_++;
     pieces_.push_back({other, chart_of(piece)});
     for (size_t t = 0; t < label_.size(); ++t)
       if (label_[t] == piece && lies_above(plane, t)) label_[t] = other;
     ++cuts_;
     return other;
+  }
+
+  bool is_cut_near(size_t triangle, const Plane& plane, double tolerance,
+                   const PairPlaces& places) const {
+    std::vector<DVec3> on_plane;  // world
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3 p = mesh_.positions[mesh_.triangles[triangle][k]];
+      const Vec3 q = mesh_.positions[mesh_.triangles[triangle][(k + 1) % 3]];
+      const double a = plane.height(to_double(p)), b = plane.height(to_double(q));
+      if (std::abs(a) <= tolerance)
+        on_plane.push_back(to_double(transform_point(world_from_object_, p)));
+      if (std::min(a, b) >= -tolerance || std::max(a, b) <= tolerance) continue;
+      const DVec3 from = to_double(transform_point(world_from_object_, p));
+      const DVec3 to = to_double(transform_point(world_from_object_, q));
+      on_plane.push_back(from + (to - from) * (a / (a - b)));
+    }
+    return on_plane.size() == 2 && places.is_near(on_plane[0], on_plane[1]);
   }
 
   bool lies_above(const Plane& plane, size_t triangle) const {
@@ -177,7 +245,8 @@ class Cutter {
   scene::Mesh& mesh_;
   Mat34 world_from_object_;
   std::vector<uint32_t> label_;  ///< per triangle: its chart, or its piece of one
-  std::vector<Node> nodes_;      ///< of the chart that is being cut
+  std::vector<uint32_t> part_of_;
+  std::vector<Node> nodes_;                            ///< of the chart that is being cut
   std::vector<std::pair<uint32_t, uint32_t>> pieces_;  ///< new labels, and of which charts
   uint32_t next_ = 0;
   uint32_t cuts_ = 0;
@@ -189,6 +258,7 @@ struct Cutting {
   std::vector<uint32_t> group_of_chart;      ///< before: what is not cut stays in it
   std::vector<std::vector<uint32_t>> group;  ///< per instance and triangle; empty: not cut
   uint32_t groups = 1;
+  std::vector<scene::Uncut> before;  ///< per instance
 };
 
 void cut_instance(Cutting& cutting, uint32_t instance, std::vector<uint32_t> chart,
@@ -212,24 +282,31 @@ void cut_instance(Cutting& cutting, uint32_t instance, std::vector<uint32_t> cha
   if (cutter.cuts() == 0) return;
   cutting.out.cuts += cutter.cuts();
   std::sort(group_of_piece.begin(), group_of_piece.end());
-  std::vector<uint32_t>& group = cutting.group[instance];
-  group.resize(cutter.labels().size());
-  for (size_t t = 0; t < group.size(); ++t) {
-    const uint32_t label = cutter.labels()[t];
+  scene::CutTriangles cut{cutter.part_of(), {}};
+  for (const uint32_t label : cutter.labels()) {
     const auto found =
         std::lower_bound(group_of_piece.begin(), group_of_piece.end(), std::pair(label, 0u));
     const bool is_piece = found != group_of_piece.end() && found->first == label;
-    group[t] = is_piece ? found->second : cutting.group_of_chart[cutter.chart_of(label)];
+    cut.group.push_back(is_piece ? found->second : cutting.group_of_chart[cutter.chart_of(label)]);
   }
-  const uint32_t old = scene.instances[instance].mesh;
-  const auto users = std::count_if(scene.instances.begin(), scene.instances.end(),
-                                   [&](const scene::Instance& i) { return i.mesh == old; });
-  if (users == 1) {
-    scene.meshes[old] = std::move(mesh);
-    return;
+  scene::join_pieces(mesh, cut, cutting.before[instance].vertices);
+  cutting.group[instance] = std::move(cut.group);
+  scene::Mesh& own = scene::own_mesh(scene, instance);
+  for (const uint32_t t : cut.part_of) cutting.before[instance].whole.push_back(own.triangles[t]);
+  own = std::move(mesh);
+}
+
+/// Neighbours in other meshes, and of edges that did not match before, get the new vertices, too.
+void divide_neighbours(Cutting& cutting, const Atlas& atlas) {
+  const auto part_of = scene::close_t_junctions(cutting.out.scene, std::move(cutting.before));
+  for (uint32_t i = 0; i < part_of.size(); ++i) {
+    if (part_of[i].empty()) continue;
+    std::vector<uint32_t>& group = cutting.group[i];
+    if (group.empty())
+      for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
+        group.push_back(cutting.group_of_chart[atlas.chart[t]]);
+    for (const uint32_t t : part_of[i]) group.push_back(uint32_t(group[t]));
   }
-  scene.instances[instance].mesh = uint32_t(scene.meshes.size());
-  scene.meshes.push_back(std::move(mesh));
 }
 
 }  // namespace
@@ -241,7 +318,7 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
   LUXEL_CHECK(atlas.first_triangle.size() == out.scene.instances.size() + 1);
   std::vector<uint32_t> instance_of_chart(atlas.chart_count);
   LUXEL_CHECK(group.empty() || group.size() == atlas.chart.size());
-  Cutting cutting{out, std::vector<uint32_t>(atlas.chart_count), {}, 1};
+  Cutting cutting{out, std::vector<uint32_t>(atlas.chart_count), {}, 1, {}};
   cutting.group.resize(out.scene.instances.size());
   for (size_t t = 0; t < group.size(); ++t) {
     cutting.group_of_chart[atlas.chart[t]] = group[t];
@@ -250,6 +327,8 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i)
     for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
       instance_of_chart[atlas.chart[t]] = i;
+  for (const scene::Instance& instance : out.scene.instances)
+    cutting.before.push_back({uint32_t(out.scene.meshes[instance.mesh].positions.size()), {}});
   // Pairs by instance and chart.
   Pairs pairs(parted.begin(), parted.end());
   std::stable_sort(pairs.begin(), pairs.end(), [&](const PartedPoints& p, const PartedPoints& q) {
@@ -265,6 +344,7 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
                   atlas.chart.begin() + atlas.first_triangle[i + 1]},
                  {pairs.begin() + long(begin), pairs.begin() + long(end)});
   }
+  if (out.cuts > 0) divide_neighbours(cutting, atlas);
   // One list of groups over all instances; what was not cut stays in its own.
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i) {
     const std::vector<uint32_t>& cut = cutting.group[i];

@@ -28,10 +28,11 @@ struct CutScene {
 /// Divides the triangles of each chart along planes until no plane parts kFewestParted pairs in one
 /// piece any more: the plane that parts most pairs first, each piece for itself (a binary space
 /// partition). Pieces that no pair connects may share a group, so a house on a lawn cuts it into
-/// the part inside and the part outside. Planes cross a whole piece, not only where the barrier
-/// stands: that is what keeps the cut lines straight and the triangles few. An instance that shares
-/// its mesh gets one of its own. `atlas` is that of `scene`.
-/// `group` is that of an earlier cut, AtlasParams::group of the atlas: its groups stay apart.
+/// the part inside and the part outside. Planes cut what lies near the pairs; other triangles of
+/// the piece go to one side whole. In the end no more vertices are left than the borders of groups
+/// need (luxel/scene/join_pieces.h), and no new T-junctions (luxel/scene/t_junctions.h). An
+/// instance that shares its mesh gets one of its own. `atlas` is that of `scene`. `group` is that
+/// of an earlier cut, AtlasParams::group of the atlas: its groups stay apart.
 CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted,
                     std::span<const uint32_t> group = {});
 

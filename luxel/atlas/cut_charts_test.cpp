@@ -6,6 +6,7 @@
 #include <set>
 
 #include "luxel/scene/shapes.h"
+#include "tests/surfaces.h"
 
 namespace luxel::atlas {
 namespace {
@@ -72,6 +73,52 @@ TEST(CutCharts, AHouseHasAnInsideAndAnOutside) {
       EXPECT_EQ(group_at(cut, on_wall - inwards), outside) << k << " " << s;
     }
   EXPECT_EQ(std::set<uint32_t>(cut.group.begin(), cut.group.end()).size(), 2u);
+  // Ten places, of the floor, of the house and where it crosses the floor's diagonal, four of them
+  // on the outline: by Euler's formula a triangulation has 2 * 10 - 2 - 4 triangles.
+  EXPECT_EQ(cut.scene.meshes[0].triangles.size(), 14u);
+}
+
+/// A lawn of 64 x 64 squares and a wall across an eighth of it. Where the wall does not stand the
+/// squares stay whole; those within three texels of its ends are cut, too.
+TEST(CutCharts, TrianglesFarFromTheWallStayWhole) {
+  Floor floor;
+  scene::Mesh& mesh = floor.scene.meshes[0];
+  mesh.positions.clear(), mesh.normals.clear(), mesh.uv0.clear(), mesh.triangles.clear();
+  constexpr uint32_t kSquares = 64;
+  for (uint32_t k = 0; k < kSquares * kSquares; ++k) {
+    const float x = float(k % kSquares) / 16, z = float(k / kSquares) / 16, d = 1.0f / 16;
+    scene::add_quad(mesh, {Vec3{x, 0, z + d}, {x + d, 0, z + d}, {x + d, 0, z}, {x, 0, z}}, 0);
+  }
+  mesh.triangle_material.assign(2 * kSquares * kSquares, 0);
+  floor.atlas.first_triangle = {0, 2 * kSquares * kSquares};
+  floor.atlas.chart.assign(2 * kSquares * kSquares, 0);
+  floor.add_wall({2.03f, 1}, {2.03f, 1.5f});
+  const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+  const size_t added = cut.scene.meshes[0].triangles.size() - 2 * kSquares * kSquares;
+  // Two triangles in a square, three pieces of each: eight squares, and at most four at each end.
+  EXPECT_GE(added, 8u * 4);
+  EXPECT_LE(added, 17u * 4);
+  EXPECT_EQ(std::set<uint32_t>(cut.group.begin(), cut.group.end()).size(), 2u);
+}
+
+/// A lawn beside a path, each a mesh of its own, and a wall across both: of the lawn's chart alone
+/// something was said, and the path gets the vertex on their common edge. A step in the file whose
+/// corners lie on another edge of the lawn stays as it was.
+TEST(CutCharts, NeighboursInOtherMeshesGetTheVertex) {
+  Floor floor;
+  scene::add_rectangle(floor.scene, {4, 8, 0, 4}, 0, true, 0);  // the path
+  scene::add_rectangle(floor.scene, {1, 2, 4, 5}, 0, true, 0);  // the step
+  floor.atlas.first_triangle = {0, 2, 4, 6};
+  floor.atlas.chart = {0, 0, 1, 1, 2, 2}, floor.atlas.chart_count = 3;
+  const size_t before =
+      testing_support::count_t_junctions(testing_support::triangles_of(floor.scene));
+  EXPECT_EQ(before, 2u);
+  floor.add_wall({0, 2.7f}, {4, 2.5f});
+  const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+  EXPECT_EQ(testing_support::count_t_junctions(testing_support::triangles_of(cut.scene)), before);
+  EXPECT_EQ(cut.scene.meshes[1].triangles.size(), 3u);
+  EXPECT_EQ(cut.scene.meshes[2].triangles.size(), 2u);
+  EXPECT_EQ(cut.group.size(), scene::first_triangles(cut.scene).back());
 }
 
 /// Two pairs leave the floor whole; so does nothing at all.

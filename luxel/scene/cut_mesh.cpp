@@ -3,21 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <optional>
-#include <tuple>
 #include <unordered_map>
 
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
+#include "luxel/scene/pieces.h"
 
 namespace luxel::scene {
 namespace {
 
-using Corners = std::array<uint32_t, 3>;
-
 uint64_t key_of(uint32_t low, uint32_t high) { return uint64_t(low) << 32 | high; }
-
-bool is_lower(Vec3 p, Vec3 q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); }
 
 /// Equal for equal positions: the sign of zero does not count.
 struct PositionHash {
@@ -51,9 +46,8 @@ class CutEdges {
   /// The vertex on a cut edge; added when it is asked for the first time.
   uint32_t vertex(uint32_t a, uint32_t b) {
     const auto [low, high] = ends(a, b);
-    const auto [found, added] =
-        vertex_.emplace(key_of(low, high), uint32_t(mesh_.positions.size()));
-    if (added) add_vertex(low, high, *share(a, b));
+    const auto [found, added] = vertex_.emplace(key_of(low, high), 0u);
+    if (added) found->second = append_between(mesh_, low, high, *share(a, b));
     return found->second;
   }
 
@@ -86,18 +80,6 @@ class CutEdges {
     if (p == place_.end() || q == place_.end()) return nullptr;
     const auto found = at_.find(key_of(p->second, q->second));
     return found == at_.end() ? nullptr : &found->second;
-  }
-
-  void add_vertex(uint32_t low, uint32_t high, float s) {
-    const auto between = [&](auto& values) {
-      if (!values.empty()) values.push_back(values[low] * (1 - s) + values[high] * s);
-    };
-    between(mesh_.positions), between(mesh_.uv0), between(mesh_.uv1), between(mesh_.colors);
-    between(mesh_.alphas), between(mesh_.normals);
-    if (mesh_.normals.empty()) return;
-    Vec3& n = mesh_.normals.back();
-    // Normals that point against each other leave none between them.
-    n = length(n) > 1e-6f ? normalize(n) : mesh_.normals[low];
   }
 
   Mesh& mesh_;
@@ -136,27 +118,6 @@ std::vector<Corners> pieces_of(const Mesh& mesh, const Corners& c, const std::ar
   return {{on_a, on_b, tip}, {a, b, on_a}, {b, on_b, on_a}};
 }
 
-/// A triangle's corners from the one at `place` on; nothing when it has none there.
-std::optional<Corners> corners_from(const Mesh& mesh, const Corners& c, Vec3 place) {
-  for (size_t k = 0; k < 3; ++k)
-    if (mesh.positions[c[k]] == place) return Corners{c[k], c[(k + 1) % 3], c[(k + 2) % 3]};
-  return {};
-}
-
-/// Ties the pieces of a triangle to those of its other side, (a, c, b) for (a, b, c).
-void tie_pieces(Mesh& mesh, std::span<const uint32_t> pieces, std::span<const uint32_t> others) {
-  const auto at = [&](uint32_t v) { return mesh.positions[v]; };
-  for (const uint32_t t : pieces) {
-    const Corners c = mesh.triangles[t];
-    for (const uint32_t o : others) {
-      const auto turned = corners_from(mesh, mesh.triangles[o], at(c[0]));
-      if (!turned || at((*turned)[1]) != at(c[2]) || at((*turned)[2]) != at(c[1])) continue;
-      mesh.triangles[o] = *turned;
-      mesh.other_side[t] = o, mesh.other_side[o] = t;
-    }
-  }
-}
-
 }  // namespace
 
 Plane plane_in_object(const Plane& world, const Mat34& m) {
@@ -164,12 +125,21 @@ Plane plane_in_object(const Plane& world, const Mat34& m) {
   return {{along(0), along(1), along(2)}, world.offset - along(3)};
 }
 
+Mesh& own_mesh(Scene& scene, uint32_t instance) {
+  const uint32_t shared = scene.instances[instance].mesh;
+  const auto users = std::ranges::count(scene.instances, shared, &Instance::mesh);
+  if (users > 1) {
+    scene.instances[instance].mesh = uint32_t(scene.meshes.size());
+    scene.meshes.push_back(Mesh(scene.meshes[shared]));
+  }
+  return scene.meshes[scene.instances[instance].mesh];
+}
+
 std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, const Plane& plane,
                                double tolerance) {
   LUXEL_CHECK(chosen.size() == mesh.triangles.size());
   CutEdges edges(mesh, chosen, plane, tolerance);
-  std::vector<uint32_t> part_of;
-  std::unordered_map<uint32_t, std::vector<uint32_t>> parts;  // of triangles with two sides
+  PieceWriter writer(mesh);
   const size_t count = edges.empty() ? 0 : mesh.triangles.size();
   for (uint32_t t = 0; t < count; ++t) {
     const Corners c = mesh.triangles[t];
@@ -181,23 +151,9 @@ std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, cons
       if (cut[k]) middle[k] = edges.vertex(c[k], c[(k + 1) % 3]);
     }
     if (!cut[0] && !cut[1] && !cut[2]) continue;
-    const std::vector<Corners> pieces = pieces_of(mesh, c, cut, middle);
-    const bool two_sided = !mesh.other_side.empty() && mesh.other_side[t] != kNone;
-    mesh.triangles[t] = pieces.front();
-    if (two_sided) parts[t].push_back(t);
-    for (size_t k = 1; k < pieces.size(); ++k) {
-      if (two_sided) parts[t].push_back(uint32_t(mesh.triangles.size()));
-      mesh.triangles.push_back(pieces[k]);
-      mesh.triangle_material.push_back(mesh.triangle_material[t]);
-      part_of.push_back(t);
-    }
+    writer.replace(t, pieces_of(mesh, c, cut, middle));
   }
-  if (!mesh.other_side.empty()) mesh.other_side.resize(mesh.triangles.size(), kNone);
-  if (parts.empty()) return part_of;
-  const std::vector<uint32_t> before = mesh.other_side;
-  for (const auto& [t, pieces] : parts)
-    if (t < before[t]) tie_pieces(mesh, pieces, parts.at(before[t]));
-  return part_of;
+  return writer.finish();
 }
 
 }  // namespace luxel::scene

@@ -14,6 +14,9 @@ namespace luxel::scene {
 /// those of the world.
 Plane plane_in_object(const Plane& world, const Mat34& world_from_object);
 
+/// The mesh of an instance, which gets one of its own where it shares it.
+Mesh& own_mesh(Scene& scene, uint32_t instance);
+
 /// Cuts every triangle with `chosen[t]` != 0 that the plane crosses into pieces on either side of
 /// it. A triangle that is not chosen but shares a cut edge is divided there too, so that no edge
 /// ends on the middle of another. Vertices at heights up to `tolerance` count as lying on the plane

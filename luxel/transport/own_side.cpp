@@ -75,10 +75,14 @@ uint64_t find_on_side(const scene::Scene& scene, const atlas::Atlas& atlas,
   uint64_t traced = 2 * rays.size() + 1;
   for (size_t k = 0; k < points.size(); ++k)
     on_side[k] = !is_between(scene, atlas, own, spots[k], hits[k]);
-  // Those that the sample does not see, around a corner, may be seen by others.
+  // Those that the sample does not see, around a corner, may be seen by others. What lies under a
+  // wall that hangs just above the floor sees both sides of it, and must not join them.
+  const auto is_under = [&](size_t k) { return spots[k].line_height < kLineHeight; };
   const auto is_seen = [&](size_t k) {
     for (size_t j = 0; j < points.size(); ++j)
-      if (on_side[j] && (++traced, sees(scene, atlas, tracer, spots[j], spots[k]))) return true;
+      if (on_side[j] && (is_under(k) || !is_under(j)) &&
+          (++traced, sees(scene, atlas, tracer, spots[j], spots[k])))
+        return true;
     return false;
   };
   for (bool changes = true; changes;) {

@@ -74,7 +74,9 @@ Rgb own_irradiance_at(const OwnSides& sides, std::span<const Rgb> irradiance,
 std::vector<uint64_t> lookups_near(const OwnSides& sides, std::span<const Box3> boxes);
 
 /// Sets on_side[k] to 1 where points[k] of a texel's footprint lies on the side of its sample: it
-/// sees the sample, or another point that does; else to 0. Returns the number of rays.
+/// sees the sample, or another point that does, but for points under something that lies less than
+/// a twentieth of a texel above them: a way from there leads to others of this kind alone; else to
+/// 0. Returns the number of rays.
 uint64_t find_on_side(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const trace::RayTracer& tracer, const scene::SurfacePoint& sample,
                       std::span<const scene::SurfacePoint> points, std::span<uint8_t> on_side);

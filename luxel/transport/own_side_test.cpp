@@ -84,6 +84,39 @@ TEST(OwnSides, AreNotAskedBesideThickThings) {
   EXPECT_GT(count(sides.beside_solids), 30u);  // its outline is 40 texels long
 }
 
+/// A wall hangs above a texel, whose sample lies beside it, in the open. Where the gap is a
+/// hundredth of a texel, points under the wall see both sides, and those beyond are not the
+/// sample's own. Where it is a fifth of a texel, light passes, and all are.
+TEST(OwnSides, FootprintsEndAtWallsThatHangJustAboveTheFloor) {
+  constexpr float kTexel = 1 / 16.0f;
+  for (const float gap : {0.01f * kTexel, 0.2f * kTexel}) {
+    Floor floor;
+    floor.add_box({1.01f, gap, -1}, {1.025f, 1, 3});
+    const trace::RayTracer rays = floor.tracer();
+    const uint32_t texel = floor.map.texel_at[4 * Floor::kSide + 16];  // its sample at x = 1.03125
+    const scene::SurfacePoint sample = floor.map.texels[texel].sample;
+    const auto& corners = floor.atlas.corners[sample.triangle];
+    std::vector<scene::SurfacePoint> points;
+    for (uint32_t k = 0; k < 64; ++k)
+      points.push_back(
+          {0, sample.triangle, atlas::barycentric_in(corners, Vec2{16, 4} + sobol_owen_2d(k, 1))});
+    std::vector<uint8_t> on_side(points.size());
+    find_on_side(floor.scene, floor.atlas, rays, sample, points, on_side);
+    int beyond = 0, under = 0;
+    for (size_t k = 0; k < points.size(); ++k) {
+      const float x = scene::world_position(floor.scene, points[k]).x;
+      if (x > 1.01f && x < 1.025f) {
+        ++under;
+        continue;
+      }
+      beyond += x < 1.01f;
+      EXPECT_EQ(on_side[k] != 0, x > 1.02f || gap > 0.1f * kTexel) << x << " " << gap;
+    }
+    EXPECT_GT(beyond, 5);
+    EXPECT_GT(under, 5);
+  }
+}
+
 /// Points of a texel's footprint beyond a wall are not its own; those around a corner are.
 TEST(OwnSides, FootprintsEndAtWalls) {
   Floor floor;

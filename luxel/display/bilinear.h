@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "luxel/base/vec.h"
+#include "luxel/image/image.h"
 
 namespace luxel::display {
 
@@ -27,6 +28,14 @@ inline BilinearTexels bilinear_texels(int width, int height, Vec2 uv) {
     out.weight[k] = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
   }
   return out;
+}
+
+inline Rgb bilinear_at(const image::Image& picture, Vec2 uv) {
+  const BilinearTexels texels = bilinear_texels(picture.width, picture.height, uv);
+  Rgb sum{};
+  for (size_t k = 0; k < 4; ++k)
+    sum += picture.rgb(texels.texel[k][0], texels.texel[k][1]) * texels.weight[k];
+  return sum;
 }
 
 }  // namespace luxel::display

@@ -21,6 +21,67 @@ vec3 srgb(vec3 c) {
              vec3(lessThanEqual(c, vec3(0.0031308))));
 }`;
 
+/**
+ * luxel/display/smooth_lookup.h: 16 weights of texels, from `first` on. Alpha is 1 inside of charts,
+ * at least 1/2 where there is a surface, and less in the gutter, which counts where nothing else is.
+ */
+const smoothLight = /* glsl */ `
+#ifdef LAYERS
+#define TEXEL(texel, layer) texelFetch(light, ivec3(texel, layer), 0)
+#define BILINEAR(place, layer) texture(light, vec3(place, float(layer)))
+#else
+#define TEXEL(texel, layer) texelFetch(light, texel, 0)
+#define BILINEAR(place, layer) texture(light, place)
+#endif
+float spline(float away) {
+  float d = abs(away);
+  return d < 0.5 ? 0.75 - d * d : 0.5 * max(1.5 - d, 0.0) * max(1.5 - d, 0.0);
+}
+float bilinear(vec2 away) {
+  return max(1.0 - abs(away.x), 0.0) * max(1.0 - abs(away.y), 0.0);
+}
+struct Smooth {
+  ivec2 first;
+  float weight[16];  // all 0: in the gutter
+};
+Smooth smoothAt(vec2 place) {
+  Smooth s;
+  ivec2 size = textureSize(light, 0).xy;
+  vec2 at = place * vec2(size) - 0.5;
+  vec2 to = at - floor(at) + 1.0;
+  s.first = ivec2(floor(at)) - 1;
+  uint inside = 0u;  // bit 4 y + x: a texel of the 4 x 4 is
+  float linear[16];
+  vec2 sums = vec2(0.0);
+  for (int k = 0; k < 16; ++k) {
+    ivec2 cell = ivec2(k & 3, k >> 2), texel = s.first + cell;
+    bool isThere = all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));
+    float alpha = isThere ? TEXEL(texel, 0).a : 0.0;
+    vec2 away = to - vec2(cell);
+    linear[k] = alpha < 0.5 ? 0.0 : bilinear(away);
+    s.weight[k] = alpha < 1.0 ? 0.0 : spline(away.x) * spline(away.y);
+    if (alpha >= 1.0) inside |= 1u << k;
+    sums += vec2(linear[k], s.weight[k]);
+  }
+  float share = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 cell = ivec2(k & 1, k >> 1);
+    uint around = 0x777u << (cell.x + 4 * cell.y);
+    if ((inside & around) == around) share += bilinear(to - 1.0 - vec2(cell));
+  }
+  sums = max(sums, 1e-9);
+  for (int k = 0; k < 16; ++k)
+    s.weight[k] = mix(linear[k] / sums.x, s.weight[k] / sums.y, share);
+  return s;
+}
+vec3 lightAt(vec2 place, int layer, Smooth s) {
+  vec4 sum = vec4(0.0);
+  for (int k = 0; k < 16; ++k)
+    if (s.weight[k] > 0.0)
+      sum += vec4(TEXEL(s.first + ivec2(k & 3, k >> 2), layer).rgb, 1.0) * s.weight[k];
+  return sum.a > 0.5 ? sum.rgb : BILINEAR(place, layer).rgb;
+}`;
+
 const vertexShader = /* glsl */ `
 precision highp float;
 uniform mat4 modelViewMatrix, projectionMatrix;
@@ -84,6 +145,7 @@ in vec3 tint;
 in float clear;
 out vec4 pixel;
 ${toneMap}
+${smoothLight}
 void main() {
   vec4 base = vec4(baseColor * tint, alpha * (1.0 - clear));
   float metalness = metallic;
@@ -102,12 +164,13 @@ void main() {
 #endif
   if (base.a < cutoff) discard;
   vec3 rho = clamp(base.rgb * (1.0 - clamp(metalness, 0.0, 1.0)), 0.0, 0.99);
+  Smooth smoothly = smoothAt(atLight);
 #ifdef LAYERS
   vec3 irradiance = vec3(0.0);
   for (int l = 0; l < LAYERS; ++l)
-    irradiance += texture(light, vec3(atLight, float(l))).rgb * (layerScale[l] * layerColor[l]);
+    irradiance += lightAt(atLight, l, smoothly) * (layerScale[l] * layerColor[l]);
 #else
-  vec3 irradiance = texture(light, atLight).rgb * lightScale;
+  vec3 irradiance = lightAt(atLight, 0, smoothly) * lightScale;
 #endif
   const float pi = 3.14159265358979;
 #ifdef UNLIT

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "luxel/display/draw.h"
+#include "luxel/display/smooth_lookup.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/trace/camera_rays.h"
-#include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -149,7 +149,7 @@ Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer
   display::DrawParams params;
   std::tie(params.width, params.height) = preview_size(camera);
   const auto irradiance_at = [&](const scene::SurfacePoint& p) {
-    return transport::irradiance_at(field, p);
+    return display::smooth_irradiance_at(field, p);
   };
   const display::SeenAt seen_at = [&](const trace::Hit& hit) {
     return display::seen_radiance(bake.scene, hit.point(), irradiance_at);

@@ -10,13 +10,13 @@
 #include "luxel/base/file.h"
 #include "luxel/display/draw.h"
 #include "luxel/display/lightmap_lookup.h"
+#include "luxel/display/smooth_lookup.h"
 #include "luxel/image/codec.h"
 #include "luxel/image/color.h"
 #include "luxel/image/value_scale.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/scene/normal_map.h"
-#include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -101,7 +101,7 @@ struct BakeToDraw {
 
   /// E of the front side, with the normal that the surface has there.
   Rgb irradiance_at(const scene::SurfacePoint& p) const {
-    const Rgb e = display::lightmap_at(scene, lightmaps.of(scene, p), p);
+    const Rgb e = display::smooth_lightmap_at(scene, lightmaps.of(scene, p), p);
     const bool flat = scene::material_at(scene, p).normal_texture.texture == scene::kNone;
     if (directions.empty() || flat) return e;
     const Vec3 bend = scene::bent_normal(scene, p) - scene::shading_normal(scene, p);
@@ -143,7 +143,7 @@ Result<image::Image> draw_quick_bake(const Subject& subject, const RenderSetting
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return transport::irradiance_at(field, p);
+    return display::smooth_irradiance_at(field, p);
   };
   return display::draw(bake.scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }

@@ -2,7 +2,10 @@
 // device.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "luxel/display/draw.h"
+#include "luxel/display/smooth_lookup.h"
 #include "luxel/image/color.h"
 #include "luxel/image/false_color.h"
 #include "luxel/image/flip.h"
@@ -112,6 +115,35 @@ TEST_F(PainterTest, LightFadesIntoItsSecondPicture) {
     expect_radiance(picture->rgb(kSide / 2, kSide / 2),
                     (Rgb{3, 3, 3} * (1 - share) + Rgb{5000, 3, 0} * share) * (1 / kPi));
   }
+}
+
+// Between texels light is that of display::smooth_lightmap_at(), which pictures of bakes have: the
+// spline inside of a chart, bilinear beside the column that is not.
+TEST_F(PainterTest, LightIsThatOfSmoothLookUps) {
+  LitSquare lit;
+  image::Image& light = lit.lightmaps.pictures[0];
+  light = image::Image(12, 12, 4);
+  std::mt19937 random(7);
+  for (int i = 0; i < 144; ++i) {
+    const float e = float(random() % 8);
+    light.set_rgb(i % 12, i / 12, {e, 7 - e, 1});
+    light.at(i % 12, i / 12)[3] = i % 12 == 8 ? 0.5f : 1.0f;
+  }
+  Frame frame;
+  frame.camera = camera_at(3), frame.show = Show::light;
+  const image::Image picture = picture_of(lit, frame);
+  const auto tracer = trace::RayTracer::build(lit.scene);
+  ASSERT_TRUE(tracer);
+  const trace::CameraRays rays(frame.camera, kSide, kSide);
+  for (const int y : {20, 29, 33, 41})
+    for (int x = 14; x < 50; ++x) {
+      const trace::Hit hit = tracer->closest_hit(rays.through(float(x) + 0.5f, float(y) + 0.5f));
+      const bool is_on_diagonal = x + y == int(kSide) - 1;  // looked up twice, beside the middle
+      if (!hit.found() || is_on_diagonal) continue;
+      const Rgb e = display::smooth_lightmap_at(lit.scene, light, hit.point());
+      const Rgb seen = picture.rgb(x, y) * kPi;
+      EXPECT_LE(max_component(max(e - seen, seen - e)), 0.06f) << x << " " << y;
+    }
 }
 
 // Metal reflects nothing diffusely, and no surface reflects more than 0.99.

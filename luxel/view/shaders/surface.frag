@@ -47,6 +47,7 @@ float turn_of_place() {
 }
 
 #include "direct.glsl"
+#include "smooth.glsl"
 
 // The front of the surface; a coarse grid of pixels knows it.
 vec3 facet_normal() {
@@ -70,9 +71,9 @@ vec3 normal_on(vec3 facet) {
 // E at a place of the lightmap. Its second picture comes while light changes.
 vec3 irradiance_at(vec2 place) {
   vec2 scale = light_now.scale[materials.at[material].page];
-  vec3 first = textureLod(light, place, 0).rgb * scale.x;
+  vec3 first = smooth_light(light, place) * scale.x;
   if (!fades) return first;
-  return mix(first, textureLod(second, place, 0).rgb * scale.y, second_light);
+  return mix(first, smooth_light(second, place) * scale.y, second_light);
 }
 
 void main() {

@@ -61,7 +61,8 @@ inline size_t count_t_junctions(const std::vector<scene::Triangle3>& triangles) 
   for (const scene::Triangle3& t : triangles)
     for (const Vec3 p : {t.a, t.b, t.c}) places.emplace(std::tuple(p.x, p.y, p.z), to_double(p));
   size_t count = 0;
-  for (const auto& [key, p] : places) {
+  for (const auto& place : places) {
+    const DVec3 p = place.second;
     const auto is_amidst = [&](Vec3 a, Vec3 b) {
       const DVec3 along = to_double(b) - to_double(a), d = p - to_double(a);
       const double edge = length(along), at = dot(d, along) / edge;

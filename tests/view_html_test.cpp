@@ -448,15 +448,16 @@ TEST_F(ViewHtml, ShowsLightAloneAndColourAlone) {
 
 // LinearToneMapping and the curve of preview.png are the same line up to one half of linear light,
 // 188 of 255; what is brighter is left out. The lightmap has 8 bits here, of which the picture
-// stretches the dark ones: a step of E is up to two of the picture. The background is as black as
-// the page's: where there is none, the preview has a grey of its own.
+// stretches the dark ones: a step of E is up to two of the picture. The page looks it up bilinearly
+// and the preview with a spline, so noise is kept low. The background is as black as the page's:
+// where there is none, the preview has a grey of its own.
 TEST_F(ViewHtml, APageOfOnesOwnShowsWhatThePreviewShows) {
   const std::filesystem::path web = std::filesystem::path(LUXEL_BINARY_DIR) / "web";
   if (!std::filesystem::exists(web / "node_modules" / "three"))
     GTEST_SKIP() << "three is not in " << web << ": the build had no npm or no network";
   const ScratchFolder s;
   ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + (s.path / "b").string() +
-                  " --resolution 256 --samples 32 --background 1e-6,1e-6,1e-6")
+                  " --resolution 256 --samples 256 --background 1e-6,1e-6,1e-6")
                 .code,
             0);
   const image::Image8 preview = picture_of(s.path / "b" / "preview.png");

@@ -11,6 +11,7 @@
 #include "luxel/pipeline/bake/layers.h"
 #include "luxel/pipeline/bake/light_directions.h"
 #include "luxel/pipeline/bake/lit_pictures.h"
+#include "luxel/pipeline/bake/page_light.h"
 #include "luxel/pipeline/settings/lightmap_files.h"
 
 namespace luxel::pipeline {
@@ -57,7 +58,11 @@ Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& 
 Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
-  const std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
+  const std::vector<Lent> lent = light_for_hidden(bake);
+  std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
+  std::vector<std::vector<image::Image>> of_layers;
+  for (export_::LightmapLayer& layer : layers)
+    layer.lightmaps = of_layers.emplace_back(for_page(bake, lent, layer.lightmaps));
   const bool whole = std::ranges::all_of(bake.scene.instances, &scene::Instance::lightmapped);
   if (settings.vertex_colors || settings.attach != export_::Attach::lightmap || !layers.empty() ||
       !whole || bake.scene.origin != DVec3{}) {
@@ -70,7 +75,8 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
   }
   LUXEL_TRY(const std::string html,
             export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
-                                bake.atlas.corners.size(), glb, shown_lightmaps(bake),
+                                bake.atlas.corners.size(), glb,
+                                for_page(bake, lent, shown_lightmaps(bake)),
                                 &bake.scene.environment, layers}));
   return text_file(settings.output / "view.html", html);
 }

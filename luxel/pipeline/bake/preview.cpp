@@ -11,6 +11,7 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/dark_surfaces.h"
+#include "luxel/pipeline/bake/page_light.h"
 #include "luxel/trace/camera_rays.h"
 
 namespace luxel::pipeline {
@@ -141,8 +142,10 @@ std::pair<int, int> preview_size(const scene::Camera& camera) {
 
 Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
                     Progress& progress) {
-  const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   progress.begin("draw", 0);  // a view is chosen for the picture's sake
+  std::vector<Rgb> light = bake.light.irradiance;
+  for (const Lent& lent : light_for_hidden(bake)) light[lent.texel] = light[lent.from];
+  const transport::TexelField field{&bake.atlas, &bake.map, light};
   LUXEL_TRY(const scene::Camera camera,
             choose_camera({.view = settings.view, .aspect = kPreviewAspect}, bake.scene, tracer,
                           settings.scene.string(), &bake.warnings));

@@ -62,9 +62,6 @@ std::vector<uint32_t> take_differing(const image::Image& picture, std::span<cons
   return out;
 }
 
-/// What is seen in a direction in which there is no surface.
-using Behind = std::function<Rgb(Vec3)>;
-
 /// The share of what a ray sees that lies behind surfaces, below which nothing more is looked for.
 constexpr float kLeastLeft = 1.0f / 512;
 
@@ -77,7 +74,7 @@ struct SeenByRay {
 /// From front to back, each surface covers its share of what lies behind it. [Porter84]
 std::vector<SeenByRay> seen_along(const scene::Scene& scene, const trace::RayTracer& tracer,
                                   std::span<const trace::Ray> from, bool backs,
-                                  const SeenAt& seen_at, const Behind& behind) {
+                                  const SeenAt& seen_at, const SeenBehind& behind) {
   std::vector<trace::Ray> rays(from.begin(), from.end());
   std::vector<SeenByRay> out(rays.size());
   std::vector<float> left(rays.size(), 1);
@@ -105,7 +102,7 @@ std::vector<SeenByRay> seen_along(const scene::Scene& scene, const trace::RayTra
     rays.resize(open), of.resize(open);
   }
   for (size_t i = 0; i < out.size(); ++i) {
-    if (left[i] > 0) out[i].radiance += behind(from[i].direction) * left[i];
+    if (left[i] > 0) out[i].radiance += behind(from[i]) * left[i];
     out[i].covered = 1 - left[i];
   }
   return out;
@@ -139,9 +136,10 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
                                const DrawParams& params, Progress& progress) {
   LUXEL_CHECK(params.width > 0 && params.height > 0 && params.samples_per_axis > 0);
   const trace::CameraRays through(camera, params.width, params.height);
-  const Behind behind = [&](Vec3 direction) {
+  const SeenBehind behind = [&](const trace::Ray& ray) {
+    if (params.behind) return params.behind(ray);
     const float most = params.brightest_behind;
-    return min(scene::smooth_surroundings_towards(scene, direction), Rgb{most, most, most});
+    return min(scene::smooth_surroundings_towards(scene, ray.direction), Rgb{most, most, most});
   };
   image::Image picture(params.width, params.height, 4);
   std::vector<uint32_t> pixels(size_t(params.width) * size_t(params.height));

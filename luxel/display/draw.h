@@ -13,12 +13,16 @@
 
 namespace luxel::display {
 
+/// What a ray of the camera sees behind all surfaces.
+using SeenBehind = std::function<Rgb(const trace::Ray&)>;
+
 /// The size of a picture [pixels], and its rays.
 struct DrawParams {
   int width = 960, height = 720;
   int samples_per_axis = 3;           ///< n x n rays per pixel that differs from a neighbour
   float brightest_behind = INFINITY;  ///< what is seen of the surroundings is cut off there
   bool backs = false;                 ///< of one-sided materials are seen, too
+  SeenBehind behind = {};             ///< instead of the surroundings
 };
 
 /// How the surface that a camera's ray met looks from there. Called by many threads at once.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/dark_surfaces.h"
+#include "luxel/pipeline/bake/ground.h"
 #include "luxel/pipeline/bake/page_light.h"
 #include "luxel/trace/camera_rays.h"
 
@@ -46,6 +48,16 @@ float shown_exposure(const scene::Scene& scene, const image::Image& picture,
   return display::has_void(scene)
              ? std::min(exposure, kLampsShownAt * display::auto_exposure(card, 99))
              : exposure;
+}
+
+/// The surroundings, darker on the ground under an object; none: they are what they are.
+Result<display::SeenBehind> behind_of(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                      const scene::Camera& camera, const Progress& progress) {
+  LUXEL_TRY(std::optional<Ground> ground, ground_under(scene, tracer, camera, progress));
+  if (!ground) return display::SeenBehind();
+  return display::SeenBehind([&scene, ground = std::move(*ground)](const trace::Ray& ray) {
+    return scene::smooth_surroundings_towards(scene, ray.direction) * light_on(ground, ray);
+  });
 }
 
 /// Backs that a picture shows instead of fronts.
@@ -162,6 +174,7 @@ Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer
                ? seen_at(hit)
                : irradiance_at(hit.point()) * (kCard / kPi);
   };
+  LUXEL_TRY(params.behind, behind_of(bake.scene, tracer, camera, progress));
   LUXEL_TRY(image::Image picture,
             display::draw_seen(bake.scene, tracer, camera, seen_at, params, progress));
   const display::DrawParams small{params.width / 4, params.height / 4, 1};

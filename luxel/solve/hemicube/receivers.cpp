@@ -7,9 +7,9 @@
 namespace luxel::hemicube {
 namespace {
 
-/// How far into its triangles a vertex at the rim is looked at, in parts of its shortest edge: see
-/// make_receivers.
-constexpr float kInset = 0.1f;
+/// How far into its triangles a vertex at the rim is looked at, in parts of their size: see
+/// make_receivers; and in parts of the way to the nearest opposite edge, at most.
+constexpr float kInset = 0.1f, kMostInset = 0.5f;
 
 /// An edge of a leaf, by its vertices.
 struct LeafEdge {
@@ -65,9 +65,15 @@ Neighbours neighbours_of(std::span<const LeafEdge> edges, ElementKind kind, size
 
 /// What is known of a vertex from the triangles around it.
 struct Fan {
-  Vec3 inwards{};  ///< sum of the corners' bisectors by their angles
-  float shortest_edge_m = INFINITY;
+  Vec3 inwards{};                   ///< sum of the corners' bisectors by their angles
+  float area_m2 = 0, sizes_m3 = 0;  ///< sums over triangles: of areas, and of areas times legs
+  float nearest_edge_m = INFINITY;  ///< of those opposite
   bool at_rim = false;
+
+  /// Light at the vertex counts in each triangle by its area.
+  float inset_m() const {
+    return area_m2 > 0 ? std::min(kInset * sizes_m3 / area_m2, kMostInset * nearest_edge_m) : 0;
+  }
 };
 
 std::vector<Fan> fans_of(const Mesh& mesh, std::span<const uint32_t> leaves,
@@ -82,8 +88,10 @@ std::vector<Fan> fans_of(const Mesh& mesh, std::span<const uint32_t> leaves,
       const Vec3 a = normalize(to_next), b = normalize(to_last);
       Fan& fan = fans[node.vertex[k]];
       fan.inwards += normalize(a + b) * std::acos(std::clamp(dot(a, b), -1.0f, 1.0f));
-      for (const float edge_m : {length(to_next), length(to_last)})
-        if (edge_m > 0) fan.shortest_edge_m = std::min(fan.shortest_edge_m, edge_m);
+      const float area2 = length(cross(to_next, to_last));
+      if (!(area2 > 0)) continue;
+      fan.area_m2 += area2 / 2, fan.sizes_m3 += area2 / 2 * std::sqrt(area2);
+      fan.nearest_edge_m = std::min(fan.nearest_edge_m, area2 / length(to_next - to_last));
     }
   }
   for_each_edge(edges, [&](std::span<const LeafEdge> at) {
@@ -100,9 +108,9 @@ void place_vertices(const scene::Scene& scene, const Mesh& mesh, std::span<const
       e.position[i] = at.start, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
       const Fan& fan = fans[i];
-      if (!fan.at_rim || !std::isfinite(fan.shortest_edge_m)) continue;
+      if (!fan.at_rim || !(fan.inset_m() > 0)) continue;
       const Vec3 along = fan.inwards - at.geometric_normal * dot(fan.inwards, at.geometric_normal);
-      e.position[i] += normalize(along) * (kInset * fan.shortest_edge_m);
+      e.position[i] += normalize(along) * fan.inset_m();
     }
   });
 }

@@ -34,12 +34,14 @@ struct Receivers {
 };
 
 /// A vertex at the rim of its surface (a crease, an open edge) is looked at from a tenth of its
-/// shortest edge inside: there a wall that rises from the rim hides what it must. The paper moves
+/// triangles' size inside: there a wall that rises from the rim hides what it must. The paper moves
 /// up along the normal instead [Rodriguez06, section 4.5.3], where a wall's foot is lost. Beside a
 /// corner light falls like x log x, which linear interpolation from its limit at the rim would
 /// underestimate all along the first triangles: a tenth takes half of that away and is wrong by
-/// less than it at the rim itself. Triangles are looked at from their centroids. A reflectance that
-/// varies is averaged over the element.
+/// less than it at the rim itself. Where triangles of several sizes meet, each counts by its area,
+/// as the vertex's light does in it: a tenth of the smallest would leave the large ones dark.
+/// Triangles are looked at from their centroids. A reflectance that varies is averaged over the
+/// element.
 Receivers make_receivers(const scene::Scene& scene, const Mesh& mesh, ElementKind kind);
 
 }  // namespace luxel::hemicube

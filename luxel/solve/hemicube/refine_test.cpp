@@ -190,5 +190,30 @@ TEST(InterpolationErrors, AreThoseOfKnownFunctions) {
   }
 }
 
+// A square in four triangles about its middle, of which one is cut in two. Their size is the root
+// of twice their area: at the two corners that the halves share with a whole one, a tenth of it is,
+// by areas of 1/8 and 1/4, 0.1 (0.5 / 8 + sqrt(0.5) / 4) / (1/8 + 1/4); at the others, of two whole
+// ones, and on the middle of the side, of two halves, it is that of one. Corners look at the
+// middle.
+TEST(Receivers, RimsAreLookedAtByTheSizesOfTheirTriangles) {
+  const scene::Scene square = testing::scene_of(testing::unit_square());
+  Mesh mesh = testing::mesh_of(square, 0);
+  Bisector bisector(mesh);
+  bisector.cut(0);
+  ASSERT_EQ(leaves(mesh).size(), 4u);
+  bisector.cut(leaves(mesh)[0]);
+  ASSERT_EQ(mesh.vertices.size(), 6u);
+  const Receivers receivers = make_receivers(square, mesh, ElementKind::vertex);
+  std::vector<double> insets;
+  for (size_t i = 0; i < receivers.size(); ++i)
+    insets.push_back(
+        double(length(receivers.elements.position[i] - mesh.points[mesh.point_of[i]])));
+  std::ranges::sort(insets);
+  const double whole = 0.1 * std::sqrt(0.5), half = 0.05;
+  const double both = (half / 8 + whole / 4) / (1 / 8.0 + 1 / 4.0);
+  const std::vector<double> expected{0, half, both, both, whole, whole};
+  for (size_t i = 0; i < insets.size(); ++i) EXPECT_NEAR(insets[i], expected[i], 1e-5) << i;
+}
+
 }  // namespace
 }  // namespace luxel::hemicube

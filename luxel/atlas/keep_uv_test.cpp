@@ -3,6 +3,7 @@
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/keep_uv.h"
+#include "luxel/atlas/shared_parts.h"
 #include "luxel/atlas/test_scenes.h"
 
 namespace luxel::atlas {
@@ -36,6 +37,30 @@ TEST(KeepUv, CornersAreTheFilesCoordinates) {
   EXPECT_EQ(atlas->corners[0], (std::array<Vec2, 3>{{{0, 8}, {8, 8}, {8, 0}}}));
   EXPECT_EQ(atlas->chart, (std::vector<uint32_t>{0, 0, 1, 1}));
   EXPECT_EQ(rasterise(scene, *atlas).texels.size(), 128u);
+}
+
+// Two charts meet at x = 8.25: the texels of column 8 belong to the second, which holds their
+// centres, and a quarter of each is the first one's, by one of its triangles or by both.
+TEST(KeepUv, FindsThePartsOfTexelsThatOtherChartsCover) {
+  scene::Scene scene = two_quads();
+  std::vector<Vec2>& uv = scene.meshes[0].uv1;
+  for (size_t k = 4; k < 8; ++k) uv[k].y -= 0.5f;
+  for (const size_t k : {1, 2, 4, 7}) uv[k].x = 8.25f / 16;
+  const Result<Atlas> atlas = make(scene, UvMode::keep);
+  ASSERT_TRUE(atlas) << atlas.error().message;
+  const TexelMap map = rasterise(scene, *atlas);
+  std::vector<float> area(map.texels.size());
+  for (const SharedPart& part : shared_parts(*atlas, map)) {
+    area[part.texel] += part.area;
+    EXPECT_LT(part.middle.triangle, 2u);
+    const auto& c = atlas->corners[part.middle.triangle];
+    const Vec2 at = interpolate(c[0], c[1], c[2], part.middle.at);
+    EXPECT_GT(at.x, 8);
+    EXPECT_LT(at.x, 8.25f);
+    EXPECT_EQ(int(at.y), int(map.texels[part.texel].y));
+  }
+  for (size_t i = 0; i < area.size(); ++i)
+    EXPECT_NEAR(area[i], map.texels[i].x == 8 ? 0.25f : 0, 1e-5f) << i;
 }
 
 TEST(KeepUv, NamesTheTrianglesThatOverlap) {

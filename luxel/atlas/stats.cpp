@@ -7,7 +7,9 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cover.h"
 #include "luxel/atlas/pages.h"
+#include "luxel/atlas/shared_parts.h"
 #include "luxel/base/parallel.h"
+#include "luxel/scene/drawn_triangle.h"
 
 namespace luxel::atlas {
 namespace {
@@ -136,6 +138,25 @@ std::vector<uint32_t> touched_by_others(const Atlas& atlas, const TexelMap& map,
 
 std::vector<uint32_t> overlapping_texels(const Atlas& atlas, const TexelMap& map) {
   return touched_by_others(atlas, map, std::array{DVec2{}});
+}
+
+std::vector<SharedPart> shared_parts(const Atlas& atlas, const TexelMap& map) {
+  std::vector<SharedPart> out;
+  for (uint32_t t = 0; t < atlas.corners.size(); ++t) {
+    const auto& c = atlas.corners[t];
+    const UvTriangle uv = uv_triangle({to_double(c[0]), to_double(c[1]), to_double(c[2])});
+    const auto drawn = scene::drawn_triangle(atlas.first_triangle, t);
+    for_touched(atlas, map, t, [&](uint32_t texel) {
+      const Texel& owned = map.texels[texel];
+      if (atlas.chart[owned.triangle_number] == atlas.chart[t]) return;
+      const Clip part = clip_to_texel(uv, owned.x, owned.y);
+      if (!(part.area > 0)) return;
+      const Vec2 at{float(part.centroid.x), float(part.centroid.y)};
+      out.push_back(
+          {texel, {drawn.instance, drawn.triangle, barycentric_in(c, at)}, float(part.area)});
+    });
+  }
+  return out;
 }
 
 std::vector<uint32_t> blended_texels(const Atlas& atlas, const TexelMap& map) {

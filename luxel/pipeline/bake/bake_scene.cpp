@@ -26,6 +26,7 @@
 #include "luxel/pipeline/reuse/same_work.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/sharing_error.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/pipeline/texels/resolution.h"
@@ -75,6 +76,19 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
   clear_hidden(bake.light);
   LUXEL_TRY_STATUS(check_held(input, bake.light));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
+  return {};
+}
+
+/// Charts of a kept layout may share texels, which no solver sees. Of a part of the light paths
+/// know nothing.
+Status add_sharing_error(const BakeSettings& settings, const light::TexelScene& in, Bake& bake,
+                         Progress& progress) {
+  if (bake.repair.overlapping.empty() || settings.light != LightPart::all) return {};
+  LUXEL_TRY(const double shared,
+            sharing_error(in, bake.light, {settings.bounces, settings.seed}, progress));
+  bake.light.relative_error = std::hypot(bake.light.relative_error, shared);
+  if (std::optional<double>& delivered = bake.light.delivered_error)
+    delivered = std::hypot(*delivered, shared);
   return {};
 }
 
@@ -250,6 +264,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   }
   if (settings.denoise)
     LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress, keepers.team));
+  LUXEL_TRY_STATUS(add_sharing_error(settings, input, bake, progress));
   LUXEL_TRY(const std::vector<std::string> failures,
             failures_of_others(keepers.team, parts ? parts->failure() : "", progress));
   bake.warnings.insert(bake.warnings.end(), failures.begin(), failures.end());

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/shapes.h"
 
@@ -59,8 +61,9 @@ TEST(Resolution, KeepsTheChartsOfUv1Apart) {
 }
 
 /// A square that faces up, and two that face down and meet along an edge. In TEXCOORD_1, of 64
-/// texels, the first one's chart ends 0.6 texels beside that edge.
-scene::Scene bright_beside_a_seam() {
+/// texels, the first one's chart ends beside that edge, at x = `end`, and the second begins at
+/// `begin`.
+scene::Scene bright_beside_a_seam(float end, float begin) {
   scene::Scene scene;
   const uint32_t m = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
   scene::Mesh mesh;
@@ -74,8 +77,8 @@ scene::Scene bright_beside_a_seam() {
     mesh.triangles.push_back({first, first + 2, first + 3});
     mesh.triangle_material.insert(mesh.triangle_material.end(), 2, m);
   };
-  add({Vec3{0, 5, 1}, {1, 5, 1}, {1, 5, 0}, {0, 5, 0}}, {0, 0}, {31.7f, 32});
-  add({Vec3{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {32.3f, 0}, {64, 32});
+  add({Vec3{0, 5, 1}, {1, 5, 1}, {1, 5, 0}, {0, 5, 0}}, {0, 0}, {end, 32});
+  add({Vec3{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {begin, 0}, {64, 32});
   add({Vec3{-1, 0, 0}, {0, 0, 0}, {0, 0, 1}, {-1, 0, 1}}, {0, 33}, {31, 64});
   scene::place(scene, std::move(mesh));
   for (const float up : {-1.0f, 1.0f}) {
@@ -95,7 +98,7 @@ TEST(CloseCharts, StitchingSpreadsNoLightOfAnother) {
   settings.uv = atlas::UvMode::keep, settings.resolution = 64, settings.bounces = 0;
   settings.samples = 4, settings.denoise = false;
   Progress progress;
-  const auto bake = bake_scene(bright_beside_a_seam(), settings, progress);
+  const auto bake = bake_scene(bright_beside_a_seam(31.7f, 32.3f), settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;
   EXPECT_GT(bake->seams, 0u);
   float largest = 0;
@@ -103,6 +106,25 @@ TEST(CloseCharts, StitchingSpreadsNoLightOfAnother) {
     if (bake->map.texels[i].triangle_number >= 2)
       largest = std::max(largest, bake->light.irradiance[i].x);
   EXPECT_LT(largest, 0.1f * 1.0001f);  // rounding
+}
+
+// The 32 texels of column 31 belong to the second square, whose light is 0.1, and three tenths of
+// each to the first, whose light is 10. The first has 31 x 32 texels of its own, the others
+// 33 x 32 and 31 x 31. Nothing else errs: direct light of suns has no noise.
+TEST(CloseCharts, TheStatedErrorCountsTheTexelsThatTheyShare) {
+  BakeSettings settings;
+  settings.uv = atlas::UvMode::keep, settings.resolution = 64, settings.bounces = 0;
+  settings.samples = 4, settings.supersample = 1;
+  const double texels = 31 * 32 + 33 * 32 + 31 * 31, mean = (31 * 32 * 9.9 + 0.1 * texels) / texels;
+  const double off = std::sqrt(32 * 0.3 * 9.9 * 9.9 / texels) / mean;
+  for (const bool denoise : {false, true}) {
+    settings.denoise = denoise;
+    Progress progress;
+    const auto bake = bake_scene(bright_beside_a_seam(31.3f, 31.4f), settings, progress);
+    ASSERT_TRUE(bake) << bake.error().message;
+    const double stated = bake->light.delivered_error.value_or(bake->light.relative_error);
+    EXPECT_NEAR(stated, off, 0.02 * off) << denoise;
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/validate/agreement.h"
+#include "luxel/validate/random_scenes.h"
 #include "luxel/validate/stated_errors.h"
 
 namespace luxel::bench {
@@ -17,7 +18,8 @@ namespace luxel::bench {
 struct Account {
   validate::Claim claim = validate::Claim::bound;
   std::vector<validate::Compared> compared;
-  std::vector<uint64_t> seed;  ///< of its scene
+  std::vector<uint64_t> seed;        ///< of its scene
+  std::vector<validate::Hard> hard;  ///< what is hard about it
 };
 using Accounts = std::map<std::string, Account>;
 
@@ -26,6 +28,7 @@ struct Entry {
   validate::Claim claim = validate::Claim::bound;
   uint64_t seed = 0;
   validate::Compared compared{};
+  validate::Hard hard = validate::Hard::nothing;
 };
 
 void add_entry(Accounts& accounts, const std::string& name, const Entry& entry);
@@ -39,6 +42,8 @@ struct JudgedScene {
   const validate::Judged& judged;
   uint64_t seed = 1;
   std::string lamp{};  ///< RandomScene::lamp
+  validate::Hard hard = validate::Hard::nothing;
+  validate::JudgedParts shared{};  ///< of texels, by other charts
 
   double mean_light() const {
     double sum = 0, count = 0;

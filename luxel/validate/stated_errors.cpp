@@ -18,7 +18,22 @@ double percentile(std::vector<double> values, double share) {
 
 }  // namespace
 
-StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged) {
+Result<JudgedParts> judge_parts(const Prepared& p, int samples_each, uint64_t seed,
+                                Progress& progress) {
+  JudgedParts out{atlas::shared_parts(p.atlas, p.map), {}};
+  transport::Elements places;
+  for (const atlas::SharedPart& part : out.parts) {
+    const transport::SmoothPoint at = transport::smooth_point(p.scene, part.middle);
+    places.position.push_back(at.start), places.normal.push_back(at.normal);
+    places.geometric_normal.push_back(at.geometric_normal);
+  }
+  LUXEL_TRY(out.judged,
+            judge(p.scene, *p.tracer, reference::receivers(places), samples_each, seed, progress));
+  return out;
+}
+
+StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged,
+                         const JudgedParts& shared) {
   StatedError out{.stated = light.relative_error, .stated_p95 = double(light.error_p95)};
   std::vector<size_t> texels;
   double mean = 0;
@@ -33,19 +48,25 @@ StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged
   // With D = g - truth and the variance 2 m^2 of either answer, m being the standard error of their
   // mean, (g - a)(g - b) has the mean D^2 and the variance 4 m^2 D^2 + 4 m^4.
   double squares = 0, variance = 0;
+  const auto add = [&](double g, const Judged& by, size_t k, double weight) {
+    const double a = double(luminance(by.first[k])), b = double(luminance(by.second[k]));
+    const double product = (g - a) * (g - b), m = double(luminance(by.standard_error[k]));
+    squares += weight * product;
+    variance += weight * weight * 4 * m * m * (std::max(0.0, product) + m * m);
+  };
   std::vector<double> errors;
   for (const size_t i : texels) {
     const double g = double(luminance(light.irradiance[i]));
-    const double a = double(luminance(judged.first[i])), b = double(luminance(judged.second[i]));
-    const double off = g - 0.5 * (a + b), product = (g - a) * (g - b);
-    const auto m = double(luminance(judged.standard_error[i]));
-    squares += product / double(texels.size());
-    variance += 4 * m * m * (std::max(0.0, product) + m * m) /
-                (double(texels.size()) * double(texels.size()));
-    const double noise = kSurely * m;
+    add(g, judged, i, 1 / double(texels.size()));
+    const double truth = double(luminance(judged.mean(i))), off = g - truth;
+    const double noise = kSurely * double(luminance(judged.standard_error[i]));
     errors.push_back(std::sqrt(std::max(0.0, off * off - noise * noise)) /
-                     std::max(0.5 * (a + b), 0.1 * mean));
+                     std::max(truth, 0.1 * mean));
   }
+  for (size_t k = 0; k < shared.parts.size(); ++k)
+    if (!shared.judged.hidden[k])
+      add(double(luminance(light.irradiance[shared.parts[k].texel])), shared.judged, k,
+          double(shared.parts[k].area) / double(texels.size()));
   const auto rms = [&](double square) { return std::sqrt(std::max(0.0, square)) / mean; };
   const double unsure = kSurely * std::sqrt(variance);
   out.truth = rms(squares);

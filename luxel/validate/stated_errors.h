@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "luxel/atlas/shared_parts.h"
 #include "luxel/validate/agreement.h"
 
 namespace luxel::validate {
@@ -22,8 +23,18 @@ struct StatedError {
   double true_p95 = 0;
   size_t texels = 0;
 };
-/// Over texels that neither hides. Light without texels or without light states nothing: zeros.
-StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged);
+/// Parts of texels that belong to other charts, and the judge's light at their middles.
+struct JudgedParts {
+  std::vector<atlas::SharedPart> parts;
+  Judged judged;
+};
+/// Errors: cancelled.
+Result<JudgedParts> judge_parts(const Prepared& p, int samples_each, uint64_t seed,
+                                Progress& progress);
+/// Over texels that neither hides, and, for the root mean square, over `shared` parts by their
+/// areas. Light without texels or without light states nothing: zeros.
+StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged,
+                         const JudgedParts& shared = {});
 
 /// What a stated error claims to be.
 enum class Claim {

@@ -26,6 +26,41 @@ TEST(StatedErrors, RandomScenesAreDecidedByTheirSeed) {
   EXPECT_NE(first.scene.meshes[0].positions, other.scene.meshes[0].positions);
 }
 
+// What a kind of scene is there for, in its first scenes of 32 x 32 texels.
+TEST(StatedErrors, HardScenesAreWhatTheySay) {
+  Progress progress;
+  for (const Hard hard : kHard)
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+      const std::string what = fmt::format("{} {}", name_of(hard), seed);
+      const RandomScene random = random_scene(seed, hard);
+      const auto p = prepare(random.scene, 32, progress);
+      ASSERT_TRUE(p) << what << ": " << p.error().message;
+      EXPECT_EQ((*p)->atlas.kept, hard == Hard::overlaps) << what;
+      const auto parts = atlas::shared_parts((*p)->atlas, (*p)->map);
+      EXPECT_EQ(parts.size() > 20, hard == Hard::overlaps) << what;
+      const Box3 box = scene::world_bounds(random.scene);
+      const float size = box.diagonal(), away = length((box.lower + box.upper) * 0.5f);
+      EXPECT_TRUE(hard != Hard::far || away > size) << what;
+      EXPECT_TRUE(hard != Hard::road || size > 30) << what;
+      bool all_white = true;
+      for (const Rgb& rho : (*p)->elements.reflectance) all_white &= rho.x > 0.98f || rho.x == 0;
+      EXPECT_EQ(all_white, hard == Hard::white) << what;
+    }
+}
+
+// Of four texels of light 1, which are right, a quarter of one belongs to a chart whose light is 3.
+TEST(StatedErrors, CountPartsOfTexelsByTheirAreas) {
+  const std::vector<Rgb> one(4, {1, 1, 1});
+  const Judged judged{one, one, std::vector<uint8_t>(4), std::vector<Rgb>(4)};
+  const std::vector<Rgb> three{{3, 3, 3}};
+  JudgedParts shared{{{2, {}, 0.25f}}, {three, three, {0}, {Rgb{}}}};
+  pipeline::TexelLight light;
+  light.irradiance = one;
+  EXPECT_NEAR(stated_error(light, judged, shared).truth, std::sqrt(0.25 * 4 / 4), 1e-6);
+  shared.judged.hidden = {1};
+  EXPECT_EQ(stated_error(light, judged, shared).truth, 0);
+}
+
 // Two texels of light 1, off by 0.1 and -0.3. The judge errs by 0.2 to either side.
 TEST(StatedErrors, TheJudgesNoiseDropsOut) {
   Judged judged;

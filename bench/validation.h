@@ -49,7 +49,7 @@ struct Page {
   std::vector<PageFile> files;
   nlohmann::json json;
 };
-/// All sections, a quarter of an hour on two cores. Errors: those of the sections.
+/// All sections, about an hour on two cores. Errors: those of the sections.
 Result<Page> validate(const std::filesystem::path& shared, Progress& progress);
 
 /// "| a | b |" lines of a table.

@@ -231,7 +231,7 @@ void register_commands(CLI::App& app, Action& action) {
       ->add_option(
           "NAME", options->name,
           "Table to print, or all; or a page: validation compares luxel with exact solutions and a "
-          "path tracer (15 minutes), gallery shows bakes with default options (almost an hour), "
+          "path tracer (about an hour), gallery shows bakes with default options (almost an hour), "
           "stated compares stated errors with true ones, growth bakes ever larger lightmaps and "
           "scenes (an hour, 20 GB of memory, 45 GB of disk)")
       ->check(CLI::IsMember(names))

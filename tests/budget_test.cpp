@@ -141,6 +141,18 @@ TEST(SlowTimeBudget, EndsWhenNothingIsLeftToDo) {
   EXPECT_GT(json["error"]["samples"]["mean"], 8192);
 }
 
+// All that is not light counts, too.
+TEST(SlowTimeBudget, HoldsWithTheDenoiser) {
+  const ScratchFolder s;
+  const CommandResult r =
+      luxel("bake " + scene_file("cornell-box.glb") +
+            " --resolution 256 --time-budget 10 --denoise -o " + s.path.string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const nlohmann::json json = nlohmann::json::parse(slurp(s.path / "bake.json"));
+  EXPECT_LT(json["seconds"]["total"], 11);
+  EXPECT_GT(json["seconds"]["total"], 5) << "light gets what is left";
+}
+
 TEST(TimeBudget, IsForSamplesToSuit) {
   const ScratchFolder s;
   const CommandResult r = luxel(box(s, "--time-budget 0.01 --samples 4096"));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -83,15 +84,34 @@ TEST(Events, AreAllThatStandardErrorGets) {
   EXPECT_EQ(r.out, "");
   std::vector<std::string> ended;
   size_t shown = 0;
+  double overall = 0;
   for (const nlohmann::json& event : events_in(r.err)) {
     if (event["event"] == "stage") ended.push_back(event["stage"]);
     if (event["event"] != "progress") continue;
     ++shown;
     EXPECT_TRUE(event["share"].is_null() || (event["share"] >= 0 && event["share"] <= 1)) << event;
     EXPECT_TRUE(event["seconds_left"].is_null() || event["seconds_left"] >= 0) << event;
+    const double now = event["overall"].is_null() ? 0 : event["overall"].get<double>();
+    EXPECT_GE(now, overall) << "it never falls";
+    EXPECT_LE(now, 1);
+    overall = now;
   }
   EXPECT_GT(shown, 0u);
   EXPECT_THAT(ended, AllOf(Contains("import"), Contains("trace rays"), Contains("write files")));
+}
+
+// A layout is made several times, and a picture is drawn in parts.
+TEST(ProgressLines, NameEachStageOnce) {
+  const ScratchFolder s;
+  const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") +
+                                " --resolution 32 --max-error 0.1 -o " + (s.path / "out").string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  std::map<std::string, int> times;
+  std::istringstream lines(r.err);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("  ") != std::string::npos) ++times[line.substr(0, line.find("  "))];
+  for (const char* stage : {"import", "charts", "trace rays", "bounces", "draw", "write files"})
+    EXPECT_EQ(times[stage], 1) << stage << '\n' << r.err;
 }
 
 TEST(Events, AreErrorsAndWarnings) {

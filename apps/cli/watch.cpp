@@ -1,14 +1,17 @@
 // Work whose progress is shown on stderr while it runs, and that Ctrl-C stops.
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <thread>
+#include <utility>
 
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
 #include "apps/cli/terminal.h"
+#include "luxel/base/clock.h"
 #include "luxel/base/output_folder.h"
 
 namespace luxel::cli {
@@ -21,8 +24,12 @@ std::string stopped_text(const Progress& progress) {
   return way_on.empty() ? kStopped : fmt::format("{}; {}", kStopped, way_on);
 }
 
-/// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
-/// finished stage.
+/// Lines that say how far the work is, where they stay: at most one in so many seconds, and one per
+/// so much of the work.
+constexpr double kLineSeconds = 10, kLineShare = 0.1;
+
+/// Shows the work on stderr: how far it is, one line that is rewritten on a terminal, and in the
+/// end a line for each stage.
 class ProgressLine {
  public:
   explicit ProgressLine(const Common& common)
@@ -33,24 +40,13 @@ class ProgressLine {
     print_notes(progress);
     if (quiet_ || now.stage_index < 0) return;
     say_way_on(progress);
-    print_finished(progress, size_t(now.stage_index));
-    if (now.stage == "trace rays") rays_ = now.total - now.skipped;
-    if (!terminal_) return;
-    std::string line = now.stage;
-    if (now.total > 0 && now.stage_seconds > 0) {
-      line += fmt::format("  {:3.0f} %", 100 * double(now.done) / double(now.total));
-      // What was there already has taken no time.
-      const double done = double(now.done - now.skipped), total = double(now.total - now.skipped);
-      const double share = total > 0 ? done / total : 0;
-      if (now.stage == "trace rays")
-        line += fmt::format("  {:.1f} Mrays/s", done * 1e-6 / now.stage_seconds);
-      // Long work has an estimate early, too.
-      const bool known = share > 0.02 || (share > 0 && now.stage_seconds > 3);
-      if (known && now.seconds_left < 0)
-        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left in this stage";
-    }
-    if (now.seconds_left >= 0) line += "  " + clock_text(now.seconds_left) + " left";
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    count_rays(now);
+    if (!terminal_) return print_share(now);
+    std::string line = share_text(now) + now.stage;
+    if (now.stage == kRayStage && now.stage_seconds > 0)
+      line += fmt::format("  {:.1f} Mrays/s",
+                          double(now.done - now.skipped) * 1e-6 / now.stage_seconds);
+    std::fprintf(stderr, "\r\033[K%s%s", line.c_str(), left_text(now).c_str());
     std::fflush(stderr);
   }
 
@@ -58,12 +54,60 @@ class ProgressLine {
   void end(const Progress& progress, bool succeeded) {
     print_notes(progress);
     if (quiet_) return;
-    const size_t begun = progress.stages().size();
-    print_finished(progress, succeeded || begun == 0 ? begun : begun - 1);
     if (terminal_) std::fputs("\r\033[K", stderr);
+    std::vector<Stage> stages = progress.stages();
+    if (!succeeded && !stages.empty()) stages.pop_back();
+    for (const Stage& stage : with_one_name_each(stages)) {
+      std::string line = fmt::format("{:<18}{:7.2f} s", stage.name, stage.seconds);
+      if (stage.name == kRayStage && rays_ + stage_rays_ > 0 && stage.seconds > 0)
+        line +=
+            fmt::format("   {:.1f} Mrays/s", double(rays_ + stage_rays_) * 1e-6 / stage.seconds);
+      std::fprintf(stderr, "%s\n", line.c_str());
+    }
   }
 
  private:
+  static constexpr const char* kRayStage = "trace rays";
+
+  /// Stages that come again, as in rounds, are one, in the order in which they first came.
+  static std::vector<Stage> with_one_name_each(std::span<const Stage> stages) {
+    std::vector<Stage> out;
+    for (const Stage& stage : stages) {
+      const auto found = std::ranges::find(out, stage.name, &Stage::name);
+      if (found == out.end())
+        out.push_back(stage);
+      else
+        found->seconds += stage.seconds;
+    }
+    return out;
+  }
+  static std::string share_text(const Progress::Snapshot& now) {
+    return now.share < 0 ? std::string() : fmt::format("{:3.0f} %  ", std::floor(100 * now.share));
+  }
+  static std::string left_text(const Progress::Snapshot& now) {
+    if (now.seconds_left >= 0) return "  " + clock_text(now.seconds_left) + " left";
+    // What was there already has taken no time.
+    const double done = double(now.done - now.skipped), total = double(now.total - now.skipped);
+    const double share = total > 0 ? done / total : 0;
+    // Long work has an estimate early, too.
+    const bool known = share > 0.02 || (share > 0 && now.stage_seconds > 3);
+    return known
+               ? "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left in this stage"
+               : std::string();
+  }
+
+  void print_share(const Progress::Snapshot& now) {
+    if (now.share < next_share_ || seconds_since(printed_) < kLineSeconds) return;
+    std::fprintf(stderr, "%s%s\n", (share_text(now) + now.stage).c_str(), left_text(now).c_str());
+    printed_ = Clock::now();
+    next_share_ = kLineShare * (std::floor(now.share / kLineShare) + 1);
+  }
+  /// Rays of all stages that trace some.
+  void count_rays(const Progress::Snapshot& now) {
+    if (now.stage_index != stage_index_)
+      rays_ += std::exchange(stage_rays_, 0), stage_index_ = now.stage_index;
+    if (now.stage == kRayStage) stage_rays_ = now.total - now.skipped;
+  }
   /// As soon as there is a way on: when another process ends, mpirun passes nothing on any more,
   /// and kills this one.
   void say_way_on(const Progress& progress) {
@@ -79,20 +123,13 @@ class ProgressLine {
       ++notes_;
     }
   }
-  void print_finished(const Progress& progress, size_t count) {
-    const std::vector<Stage> stages = progress.stages();
-    for (; printed_ < count; ++printed_) {
-      const Stage& stage = stages[printed_];
-      std::string line = fmt::format("{:<18}{:7.2f} s", stage.name, stage.seconds);
-      if (stage.name == "trace rays" && rays_ > 0 && stage.seconds > 0)
-        line += fmt::format("   {:.1f} Mrays/s", double(rays_) * 1e-6 / stage.seconds);
-      std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", line.c_str());
-    }
-  }
 
   bool quiet_, says_way_on_, terminal_;
-  size_t printed_ = 0, notes_ = 0;
-  uint64_t rays_ = 0;
+  size_t notes_ = 0;
+  int stage_index_ = -1;
+  uint64_t rays_ = 0, stage_rays_ = 0;  ///< of earlier stages, and of the last that was seen
+  double next_share_ = kLineShare;
+  Clock::time_point printed_ = Clock::now();
 };
 
 /// Shows stages as lines of JSON: "stage" for each that has ended, "progress" while one runs.
@@ -104,15 +141,13 @@ class ProgressEvents {
     if (now.stage_index < 0) return;
     print_way_on(progress);
     print_finished(progress, size_t(now.stage_index));
-    nlohmann::json event{{"event", "progress"},
-                         {"stage", now.stage},
-                         {"done", now.done},
-                         {"total", now.total},
-                         {"share", nullptr},
-                         {"seconds_left", nullptr},
-                         {"stage_seconds", now.stage_seconds}};
+    nlohmann::json event{{"event", "progress"},     {"stage", now.stage},
+                         {"done", now.done},        {"total", now.total},
+                         {"share", nullptr},        {"overall", nullptr},
+                         {"seconds_left", nullptr}, {"stage_seconds", now.stage_seconds}};
     if (now.total > 0) event["share"] = double(now.done) / double(now.total);
     if (now.seconds_left >= 0) event["seconds_left"] = now.seconds_left;
+    if (now.share >= 0) event["overall"] = now.share;
     print_event(event);
   }
   void end(const Progress& progress, bool succeeded) {
@@ -166,7 +201,6 @@ enum class Work { running, succeeded, failed };
 
 template <class Shown>
 void watch(Progress& progress, const std::atomic<Work>& work, const Common& common, Shown line) {
-  using Clock = std::chrono::steady_clock;
   Clock::time_point asked{};
   while (work == Work::running) {
     if (stop_requested()) {

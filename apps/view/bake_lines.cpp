@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace luxel::view_window {
@@ -14,7 +15,7 @@ BakeLines lines_of(const view::LiveBake& live, const view::ShownScene& shown) {
               : state == view::LiveState::failed ? "no light"
               : state == view::LiveState::paused ? "stopped"
                                                  : at.stage;
-  if (at.total > 0) out.share = float(double(at.done) / double(at.total));
+  out.share = std::max(0.0f, float(at.share));
   if (state != view::LiveState::baking) out.share = state == view::LiveState::baked ? 1 : 0;
   out.can_stop = state == view::LiveState::baking, out.can_go_on = state == view::LiveState::paused;
   out.can_save = state == view::LiveState::baked;

@@ -103,7 +103,7 @@ void report(const py::object& callback, const Progress& progress) {
   const Progress::Snapshot now = progress.snapshot();
   if (now.stage_index < 0) return;
   py::object share = py::none(), left = py::none();
-  if (now.total > 0) share = py::float_(double(now.done) / double(now.total));
+  if (now.share >= 0) share = py::float_(now.share);
   if (now.seconds_left >= 0) left = py::float_(now.seconds_left);
   callback(now.stage, share, left);
 }

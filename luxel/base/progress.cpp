@@ -8,16 +8,10 @@ namespace luxel {
 inline namespace base {
 namespace {
 
-/// How far the running stage's own speed is trusted, when it says so many times what was expected.
-/// What was expected comes from work all over the stage, but its speed from that done so far, which
-/// can be easier or harder than what is left: as far as that may be the reason it is trusted only
-/// as far as the stage has come. From twice or half on the reason is the machine, which is sure
-/// after a fifth.
-double trust_in_speed(double times, double share) {
-  const double doublings = std::abs(std::log2(times));
-  const double sure_at = std::clamp(1 - 1.6 * (doublings - 0.5), 0.2, 1.0);
-  return std::min(1.0, share / sure_at);
-}
+/// The running stage's own speed is all that counts when so much of it is done: pieces come from
+/// everywhere (luxel/base/share_out.cpp), so that those to come are like those before them.
+constexpr double kSureShare = 0.25;
+constexpr double kMostWhileRunning = 0.99;
 
 }  // namespace
 
@@ -27,7 +21,7 @@ double seconds_left(const Expected& e) {
   const double by_plan = e.now * slow;
   const double by_speed = e.now_share > 0 ? e.now_taken / e.now_share : by_plan;
   const bool both = by_plan > 0 && by_speed > 0;
-  const double trust = both ? trust_in_speed(by_speed / by_plan, e.now_share) : 1;
+  const double trust = both ? std::min(1.0, e.now_share / kSureShare) : 1;
   const double whole = std::max(by_plan + trust * (by_speed - by_plan), e.now_taken);
   const double past = e.past + e.now;
   const double slow_now = past > 0 ? (e.past_taken + whole) / past : 1;
@@ -38,6 +32,7 @@ void Progress::expect(std::vector<Stage> stages) {
   const std::lock_guard lock(mutex_);
   expected_ = std::move(stages), end_begins_.reset();
   sees_the_end_ = true;
+  forget_past();
 }
 
 void Progress::expect_within(double seconds) {
@@ -46,6 +41,7 @@ void Progress::expect_within(double seconds) {
   end_begins_ = Clock::now() +
                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   sees_the_end_ = true;
+  forget_past();
 }
 
 void Progress::expect_at_end(std::vector<Stage> stages) {
@@ -53,37 +49,58 @@ void Progress::expect_at_end(std::vector<Stage> stages) {
   expected_at_end_ = std::move(stages);
 }
 
-void Progress::begin(std::string_view stage, uint64_t total) {
-  finish();
-  const std::lock_guard lock(mutex_);
-  awaited_ = {};
+void Progress::forget_past() {
+  expected_s_ = taken_s_ = 0;
+  if (!running_) awaited_ = {};
+}
+
+Stage Progress::take_expected(std::string_view stage) {
   for (std::vector<Stage>* list : {&expected_, &expected_at_end_}) {
-    const auto found =
-        std::ranges::find_if(*list, [stage](const Stage& s) { return s.name == stage; });
+    const auto found = std::ranges::find(*list, stage, &Stage::name);
     if (found == list->end()) continue;
-    awaited_ = *found;
+    Stage out = *found;
     list->erase(list->begin(), found + 1);
     // Nothing of the first list comes after the second has begun.
     if (list == &expected_at_end_) expected_.clear(), end_begins_.reset();
     sees_the_end_ = true;
-    break;
+    return out;
   }
-  stages_.push_back({std::string(stage), 0});
-  stage_start_ = Clock::now();
-  done_ = 0, skipped_ = 0;
-  total_ = total;
+  return {};
+}
+
+void Progress::begin(std::string_view stage, uint64_t total) {
+  finish();
+  const std::lock_guard lock(mutex_);
+  const bool is_next = !expected_.empty() && expected_.front().name == stage;
+  if (!stages_.empty() && stages_.back().name == stage && !is_next) {
+    // Units of a kind: its earlier parts tell how fast it goes.
+    total_.fetch_add(total, std::memory_order_relaxed);
+  } else {
+    const Stage next = take_expected(stage);
+    expected_s_ += expected_of_last(), taken_s_ += awaited_.name.empty() ? 0 : last_seconds();
+    awaited_ = next;
+    stage_start_ = Clock::now();
+    if (stages_.empty()) start_ = stage_start_;
+    stages_.push_back({std::string(stage), 0});
+    done_ = 0, skipped_ = 0;
+    total_ = total;
+  }
   running_ = true;
 }
 
 void Progress::finish() {
   const std::lock_guard lock(mutex_);
   if (running_) stages_.back().seconds = seconds_since(stage_start_);
-  if (running_ && !awaited_.name.empty()) {
-    const double total = double(total_), skipped = double(skipped_);
-    expected_s_ += awaited_.seconds * (total > 0 ? 1 - skipped / total : 1);
-    taken_s_ += stages_.back().seconds;
-  }
   running_ = false;
+}
+
+double Progress::last_seconds() const {
+  return running_ ? seconds_since(stage_start_) : stages_.back().seconds;
+}
+
+double Progress::expected_of_last() const {
+  const double total = double(total_), skipped = double(skipped_);
+  return awaited_.seconds * (total > 0 ? 1 - skipped / total : 1);
 }
 
 Progress::Snapshot Progress::snapshot() const {
@@ -94,24 +111,47 @@ Progress::Snapshot Progress::snapshot() const {
   s.done = done_;
   s.total = total_;
   s.skipped = skipped_;
-  s.stage_seconds = running_ ? seconds_since(stage_start_) : stages_.back().seconds;
+  s.stage_seconds = last_seconds();
   s.stage_index = int(stages_.size()) - 1;
-  if (!sees_the_end_) return s;
+  s.seconds_left = seconds_left_now(s);
+  s.share = share_now(s);
+  return s;
+}
+
+double Progress::seconds_left_now(const Snapshot& s) const {
+  if (!sees_the_end_) return -1;
   if (awaited_.name.empty() && expected_.empty() && expected_at_end_.empty() && !end_begins_)
-    return s;
-  Expected e{expected_s_, taken_s_, awaited_.seconds, 0, 0, 0};
-  if (!awaited_.name.empty()) {
-    e.now_taken = s.stage_seconds;
+    return -1;
+  Expected e{.past = expected_s_, .past_taken = taken_s_};
+  if (!awaited_.name.empty() && !running_) {
+    e.past += expected_of_last(), e.past_taken += s.stage_seconds;
+  } else if (!awaited_.name.empty()) {
+    e.now = expected_of_last(), e.now_taken = s.stage_seconds;
     // What was there already takes no time.
     const double total = double(s.total - s.skipped), done = double(s.done - s.skipped);
-    if (s.total > 0) e.now *= total / double(s.total);
     if (total > 0) e.now_share = std::min(1.0, done / total);
   }
   for (const std::vector<Stage>* list : {&expected_, &expected_at_end_})
     for (const Stage& stage : *list) e.future += stage.seconds;
   if (end_begins_) e.future += std::max(0.0, -seconds_since(*end_begins_));
-  s.seconds_left = luxel::seconds_left(e);
-  return s;
+  return luxel::seconds_left(e);
+}
+
+double Progress::share_now(const Snapshot& s) const {
+  if (s.seconds_left >= 0) {
+    // What is left of the work falls to zero as evenly as the time left does. If that is L now and
+    // was L + dt when somebody asked before, L / (L + dt) remains.
+    const double now_s = seconds_since(start_), before_s = share_ < 0 ? 0 : share_s_;
+    const double time = s.seconds_left + now_s - before_s;
+    const double share = 1 - (1 - std::max(share_, 0.0)) * (time > 0 ? s.seconds_left / time : 0);
+    // What runs is not yet done.
+    share_ = std::max(share_, running_ ? std::min(share, kMostWhileRunning) : share);
+    share_s_ = now_s;
+  }
+  if (share_ >= 0) return share_;
+  // What comes before the end is not known yet.
+  if (!expected_at_end_.empty()) return -1;
+  return s.total > 0 ? std::min(1.0, double(s.done) / double(s.total)) : -1;
 }
 
 std::vector<Stage> Progress::stages() const {

@@ -30,7 +30,7 @@ struct Expected {
   double future = 0;                ///< of stages to come
 };
 /// Seconds to the end, if what is to come is as much slower than expected as what has come. How
-/// fast the running stage goes counts for more the more of it is done.
+/// fast the running stage goes counts for more the more of it is done, and alone after a quarter.
 double seconds_left(const Expected& e);
 
 /// Work calls begin() per stage and advance() per tile or iteration, never per ray. A watcher may
@@ -38,7 +38,9 @@ double seconds_left(const Expected& e);
 /// work polls cancelled() at the same places where it advances, and at least every 0.2 s.
 class Progress {
  public:
-  /// Starts a stage of `total` units of work and ends the one before. Called by one thread.
+  /// Starts a stage of `total` units of work and ends the one before, or goes on with that, by so
+  /// many units more, if it has the same name and the next one that is expected has not. Called by
+  /// one thread.
   void begin(std::string_view stage, uint64_t total);
   /// Ends the last stage.
   void finish();
@@ -50,11 +52,12 @@ class Progress {
     advance(units);
   }
 
-  /// What stages to come are expected to take, in order, instead of what was said before; and those
-  /// that come after all of them, which alone say nothing about what comes before them. A stage
-  /// that comes unexpected takes no place in either.
+  /// What stages to come are expected to take, in order, instead of what was said before: by all
+  /// that is known now, so that what earlier stages took counts no more. A stage that comes
+  /// unexpected takes no place.
   void expect(std::vector<Stage> stages);
-  /// Stages that come after all others, with what they are expected to take.
+  /// Stages that come after all others, with what they are expected to take. They alone say nothing
+  /// about what comes before them.
   void expect_at_end(std::vector<Stage> stages);
   /// All before the end takes so many seconds from now, whatever stages come.
   void expect_within(double seconds);
@@ -81,6 +84,10 @@ class Progress {
     double stage_seconds = 0;
     int stage_index = -1;
     double seconds_left = -1;  ///< of all that is expected; < 0: not known
+    /// Of all work, which never falls; of the stage alone where the end is not known; < 0: neither
+    /// is known. At first it is the time taken over that and the time left. Then it grows as it
+    /// must to be 1 in the end, so that an estimate that is wrong for a moment does not move it.
+    double share = -1;
   };
   /// The state now. Thread-safe.
   Snapshot snapshot() const;
@@ -110,12 +117,20 @@ class Progress {
   bool sees_the_end_ = false;            ///< what comes before it is expected, or it has begun
   Stage awaited_;                        ///< the running stage, as it was expected
   double expected_s_ = 0, taken_s_ = 0;  ///< of expected stages that have ended
-  Clock::time_point stage_start_;
+  Clock::time_point start_, stage_start_;
+  mutable double share_s_ = 0;  ///< seconds after the start, when a watcher last asked
+  mutable double share_ = -1;   ///< and the share of all work then; < 0: nobody knew
   bool running_ = false;
   std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};
   std::vector<std::string> notes_;
   std::string way_on_;
   std::function<void()> clean_up_;
+  void forget_past();
+  Stage take_expected(std::string_view stage);
+  double last_seconds() const;      ///< of the running stage, or the last one
+  double expected_of_last() const;  ///< of it, without what was there already
+  double seconds_left_now(const Snapshot& s) const;
+  double share_now(const Snapshot& s) const;
   void wait_while_paused() const;
   std::atomic<bool> cancelled_{false}, is_paused_{false};
 };

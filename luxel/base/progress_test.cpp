@@ -90,8 +90,8 @@ TEST(SecondsLeft, FollowFromWhatTheWorkHasTakenSoFar) {
 TEST(SecondsLeft, FollowFromTheSpeedOfTheRunningStage) {
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 4 * 5);
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 30, 0, 0}), 0) << "never below nothing";
-  // Half took 4 s of 10: it may have been the easier half. It will take 9 and not 8.
-  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0.5, 0}), 5);
+  // An eighth took 0.5 s of 10: half of what counts says 4 s, the other half 10.
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 0.5, 0.125, 0}), 6.5);
 }
 
 TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
@@ -145,6 +145,54 @@ TEST(Progress, WhatIsSkippedIsDoneButTakesNoTime) {
   EXPECT_NEAR(progress.snapshot().seconds_left, 500, 1);
   progress.begin("next", 10);
   EXPECT_EQ(progress.snapshot().skipped, 0u);
+}
+
+// 1 s of 100 s, and then 1 s of 1000 s: what was shown stays. In the end all is done.
+TEST(Progress, TheShareOfAllWorkNeverFalls) {
+  Progress progress;
+  progress.begin("read", 4);
+  progress.advance(1);
+  EXPECT_DOUBLE_EQ(progress.snapshot().share, 0.25) << "nothing is expected: that of the stage";
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // at least
+  progress.expect({{"trace", 0.2}, {"write", 0.1}});
+  const double shown = progress.snapshot().share;
+  EXPECT_GT(shown, 0.02 / (0.02 + 0.3) - 0.01);
+  progress.expect({{"trace", 1000}, {"write", 0.1}});
+  EXPECT_GE(progress.snapshot().share, shown);
+  EXPECT_NEAR(progress.snapshot().share, shown, 0.01);
+  progress.begin("trace", 0);
+  progress.begin("write", 0);
+  progress.finish();
+  EXPECT_DOUBLE_EQ(progress.snapshot().seconds_left, 0);
+  EXPECT_DOUBLE_EQ(progress.snapshot().share, 1);
+}
+
+// A stage in parts is one stage; another of its name that is the next to come is another.
+TEST(Progress, AStageGoesOnUnderItsName) {
+  Progress progress;
+  progress.expect({{"draw", 1000}, {"draw", 100}, {"write", 10}});
+  progress.begin("draw", 10);
+  progress.begin("draw", 10);
+  EXPECT_EQ(progress.stages().size(), 2u) << "the second one was expected";
+  progress.advance(10);
+  progress.begin("draw", 30);
+  EXPECT_EQ(progress.snapshot().done, 10u) << "that goes on";
+  EXPECT_EQ(progress.snapshot().total, 40u);
+  progress.finish();
+  progress.begin("draw", 0);
+  EXPECT_EQ(progress.stages().size(), 2u);
+  progress.begin("write", 0);
+  EXPECT_EQ(progress.stages().size(), 3u);
+}
+
+// 100 s were expected and took none; what is told after that is known better.
+TEST(Progress, WhatIsToldAnewCountsAsItIs) {
+  Progress progress;
+  progress.expect({{"lay out", 100}, {"trace", 50}});
+  progress.begin("lay out", 0);
+  progress.finish();
+  progress.expect({{"trace", 50}});
+  EXPECT_DOUBLE_EQ(progress.snapshot().seconds_left, 50);
 }
 
 TEST(Progress, CarriesWhatIsToBeSaidAndDone) {

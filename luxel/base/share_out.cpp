@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 #include "luxel/base/parallel.h"
@@ -14,6 +15,21 @@ namespace {
 /// pieces take.
 constexpr uint64_t kTimesEach = 64;
 constexpr uint64_t kMostAtATime = 64;
+
+/// Pieces of a stage in an order in which those that follow each other lie far apart: parts of a
+/// scene that are dear come evenly, so that the work done tells how long the rest takes.
+class SpreadOrder {
+ public:
+  explicit SpreadOrder(size_t count)
+      // Multiples of the golden section are spread evenly; without a common factor all come once.
+      : count_(count), step_(std::max<uint64_t>(1, uint64_t(0.6180339887 * double(count)))) {
+    while (count_ > 1 && std::gcd(step_, count_) > 1) ++step_;
+  }
+  size_t operator()(size_t number) const { return size_t(uint64_t(number) * step_ % count_); }
+
+ private:
+  uint64_t count_, step_;
+};
 
 /// Hands the team's numbers on to the threads of one member. Thread-safe.
 class PieceQueue {
@@ -117,8 +133,9 @@ Result<std::vector<uint32_t>> share_out(Team* team, size_t count, Progress& prog
                                         const std::function<void(size_t)>& work) {
   std::vector<uint8_t> is_own(count, team ? 0 : 1);
   if (!team) {
-    parallel_for(count, 1, [&](size_t piece, size_t) {
-      if (!progress.cancelled()) work(piece);
+    const SpreadOrder order(count);
+    parallel_for(count, 1, [&](size_t number, size_t) {
+      if (!progress.cancelled()) work(order(number));
     });
   } else {
     DoneOfTeam done(*team, progress);

@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <numeric>
+#include <set>
 
+#include "luxel/base/parallel.h"
 #include "luxel/base/thread_team.h"
 
 namespace luxel {
@@ -37,6 +39,21 @@ TEST(ShareOut, IsAllOfOneProcessWithoutATeam) {
   ASSERT_TRUE(own);
   EXPECT_EQ(own->size(), 10u);
   EXPECT_THAT(times, Each(1));
+}
+
+// What is dear lies together: a part of the pieces says what all take when it has some from
+// everywhere. Of 20 that follow each other, each fifth of the pieces has one or more.
+TEST(ShareOut, TakesPiecesFromEverywhere) {
+  constexpr size_t kPieces = 1000;
+  const ThreadLimit one(1);
+  Progress progress;
+  std::vector<size_t> order;
+  ASSERT_TRUE(share_out(nullptr, kPieces, progress, [&](size_t piece) { order.push_back(piece); }));
+  for (size_t first = 0; first + 20 <= kPieces; first += 20) {
+    std::set<size_t> fifths;
+    for (size_t k = first; k < first + 20; ++k) fifths.insert(order[k] / (kPieces / 5));
+    EXPECT_EQ(fifths.size(), 5u) << first;
+  }
 }
 
 // A member that is held up takes fewer pieces: here no more than it had at hand.

@@ -81,6 +81,18 @@ Result<std::vector<Firefly>> fireflies_of(const Neighbourhood& n, const NoiseLev
   return found;
 }
 
+/// Units of Progress of all parts.
+uint64_t units_of(std::span<const NoisyLight> parts, const DenoiseParams& params) {
+  uint64_t of_rounds = 0, units = 0;
+  for (const float radius : kRadii)
+    if (radius <= params.radius) of_rounds += grow_units(radius);
+  for (const NoisyLight& part : parts) {
+    const auto noisy = std::ranges::count_if(part.variance, [](float v) { return v > 0; });
+    units += part.values.size() * kNoiseLevelUnits + uint64_t(noisy) * of_rounds;
+  }
+  return units;
+}
+
 /// Filters one part in place.
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
               Team* team, Progress& progress) {
@@ -116,7 +128,8 @@ Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
     for (const Rgb& v : part.values) LUXEL_CHECK(is_finite(v) && min_component(v) >= 0);
     for (const float v : part.variance) LUXEL_CHECK(std::isfinite(v) && v >= 0);
   }
-  progress.begin("denoise", parts.size() * places.map.texels.size() * std::size(kRadii));
+  progress.begin("denoise",
+                 places.map.texels.size() * kNeighbourhoodUnits + units_of(parts, params));
   if (kHasOidn) return denoise_with_oidn(places, parts, progress);
   LUXEL_TRY(const Neighbourhood n, make_neighbourhood(places, params, team, progress));
   for (const NoisyLight& part : parts) LUXEL_TRY_STATUS(filter(n, params, part, team, progress));

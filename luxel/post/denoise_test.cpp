@@ -24,6 +24,7 @@ struct Sheet {
   std::vector<uint8_t> hidden;
   std::vector<Rgb> values;
   std::vector<float> variance;
+  Progress::Snapshot done;  ///< after filter()
 
   explicit Sheet(int charts = 1, float angle = 0) {
     constexpr float kTexel = 0.01f, kSize = kTexel * kSide;
@@ -85,6 +86,7 @@ struct Sheet {
     const TexelGeometry places{scene, atlas, map, position, normal, hidden, {}};
     const std::vector<NoisyLight> parts{{values, variance, is_direct, look_again}};
     ASSERT_TRUE(denoise(places, parts, {}, progress));
+    done = progress.snapshot();
   }
   template <class Light>
   double rms(const Light& light) const {
@@ -126,6 +128,15 @@ TEST(Denoise, ConstantsAndSlopesStayThoughNoiseIsStated) {
     for (size_t i = 0; i < sheet.size(); ++i)
       EXPECT_NEAR(sheet.values[i].x, light(i).x, 1e-3f * light(i).x) << i;
   }
+}
+
+// All steps of the filter count, each as often as it was said to.
+TEST(Denoise, TellsHowMuchIsDone) {
+  Sheet sheet;
+  sheet.fill(flat, 0.1f);
+  sheet.filter();
+  EXPECT_GT(sheet.done.total, 0u);
+  EXPECT_EQ(sheet.done.done, sheet.done.total);
 }
 
 /// Standard deviation after the last window, of 9 texels, over that before, when all agree: the

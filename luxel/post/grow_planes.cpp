@@ -229,8 +229,8 @@ Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb
         [&](size_t cell, uint32_t j) { around.take(cell, shown[j]); }, around.tile);
     uint64_t done = 0;
     for_texels_of(n, around.tile, reach, [&](uint32_t i, size_t cell) {
-      ++done;
       if (n.place[i].spacing <= 0 || noise.variance[i] <= 0) return;
+      ++done;
       const Looker self = looker_of(n, noise, round, planes[i], i);
       MomentLanes lanes;
       add_window(around, self, cell, reach, lanes);
@@ -242,7 +242,7 @@ Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb
       planes[i] = fit(moments);
     });
     pool.give(std::move(around));
-    progress.advance(done);
+    progress.advance(done * grow_units(round.radius));
   };
   if (now.own_squares) {
     LUXEL_TRY_STATUS(do_own(team, *now.own_squares, progress, grow_square));

@@ -42,6 +42,12 @@ struct Planes {
   std::optional<std::vector<uint32_t>> own_squares{};
 };
 
+/// Of Progress, per texel that has noise; as kNeighbourhoodUnits.
+inline uint64_t grow_units(float radius) {
+  const uint64_t across = 2 * uint64_t(radius) + 1;
+  return across * ((across + 7) / 8) + 4;
+}
+
 /// One round: every texel's plane from the texels around it, weighted by how well the estimates of
 /// the round before agree. What is shown is made anew from the planes, which are then replaced.
 /// Members of a team share the texels out; null: there is none. Errors: cancelled, another member

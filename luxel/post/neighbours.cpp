@@ -103,6 +103,7 @@ Result<std::vector<uint8_t>> find_near_borders(const Neighbourhood& n, Team* tea
   BufferPool<TexelTile> pool;
   const auto look = [&](size_t number) {
     TexelTile tile = pool.take();
+    uint64_t looked_at = 0;
     fill_tile(
         n, number, n.radius, [](size_t) {}, [](size_t, uint32_t) {}, tile);
     for_texels_of(n, tile, n.radius, [&](uint32_t i, size_t cell) {
@@ -110,7 +111,9 @@ Result<std::vector<uint8_t>> find_near_borders(const Neighbourhood& n, Team* tea
       // Twice the radius: the window's corners are farther away than its sides.
       const Around self = around(n.place[i], 2 * float(n.radius), n.min_cosine);
       out[i] = is_near_a_border(tile, self, cell, n.radius);
+      ++looked_at;
     });
+    progress.advance(looked_at * (kNeighbourhoodUnits / 2));
     pool.give(std::move(tile));
   };
   LUXEL_TRY(const std::vector<uint32_t> own, luxel::share_out(team, tile_count(n), progress, look));
@@ -210,6 +213,7 @@ Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const Deno
       for (const Candidate& c : found) block.texel.push_back(c.texel);
       block.end.push_back(uint32_t(block.texel.size()));
     }
+    progress.advance((end - begin) * (kNeighbourhoodUnits / 2));
   };
   LUXEL_TRY(const std::vector<uint32_t> own, luxel::share_out(team, n.far.size(), progress, find));
   LUXEL_TRY_STATUS(give_far(team, own, n, progress));

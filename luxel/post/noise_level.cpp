@@ -128,6 +128,7 @@ Result<NoiseLevel> noise_level(const Neighbourhood& n, std::span<const Rgb> valu
       const Level own = level_of(window);
       level.variance[i] = own.variance, level.per_channel[i] = own.per_channel;
     }
+    progress.advance((end - begin) * kNoiseLevelUnits);
   };
   LUXEL_TRY_STATUS(share_ranges(team, values.size(), kBlockTexels, progress, find,
                                 std::span(level.variance), std::span(level.per_channel)));

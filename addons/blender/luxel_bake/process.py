@@ -54,7 +54,7 @@ class Bake:
     def _take(self, event):
         kind = event.get("event")
         if kind == "progress":
-            self.stage, self.share, self.seconds_left = event["stage"], event["share"], event["seconds_left"]
+            self.stage, self.share, self.seconds_left = event["stage"], event["overall"], event["seconds_left"]
         elif kind == "warning":
             self.warnings.append(event["message"])
         elif kind == "error":

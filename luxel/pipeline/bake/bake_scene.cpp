@@ -110,10 +110,15 @@ std::optional<std::string> ignored_density(const scene::Scene& scene, const atla
       first->name);
 }
 
+/// What a layout is for.
+enum class LaysOutFor { bake, plan };
+
 /// Splits sides and lays out what was read.
 Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& scene,
-                                 Progress& progress, Team* team = nullptr) {
+                                 const Keepers& keepers, LaysOutFor use, Progress& progress) {
   LUXEL_TRY(SettledResolution settled, settle_resolution(settings, scene, progress));
+  if (use == LaysOutFor::bake && !keepers.team && !keepers.device)
+    expect_usual_bake(scene, settled.settings, progress);
   SidesParams params{
       .uv = settings.uv,
       .resolution = *settled.settings.resolution,
@@ -132,7 +137,7 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
     LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
   }
   settled.settings.uv = sides.uv;
-  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress, team));
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress, keepers.team));
   layout.wrong_in_uv1 = sides.wrong_in_uv1, layout.warnings = std::move(about_uv1);
   layout.warnings.insert(layout.warnings.end(), sides.warnings.begin(), sides.warnings.end());
   if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
@@ -144,16 +149,16 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
 
 /// The layout of what was read, anew or as it was kept.
 Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene,
-                            const Keepers& keepers, Progress& progress) {
+                            const Keepers& keepers, LaysOutFor use, Progress& progress) {
   BakeCache* const cache = keepers.cache;
   if (KeptBake* found = cache ? cache->found() : nullptr)
     return lay_out_again(settings, std::move(found->layout), cache->change().boxes, scene,
                          progress);
-  if (!cache || !cache->rays()) return lay_out_anew(settings, scene, progress, keepers.team);
+  if (!cache || !cache->rays()) return lay_out_anew(settings, scene, keepers, use, progress);
   std::vector<std::vector<uint32_t>> numbers;
   const size_t materials = scene.materials.size();
   for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
-  LUXEL_TRY(TexelLayout layout, lay_out_anew(settings, scene, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out_anew(settings, scene, keepers, use, progress));
   KeptLayout kept = keep_layout(scene, layout);
   kept.one_sided_of = one_sided_copies(numbers, materials, scene);
   cache->keep(std::move(kept));
@@ -162,11 +167,11 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene,
 
 /// Lays out bake.scene, which the tracer looks at.
 Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers& keepers,
-                         Progress& progress) {
+                         LaysOutFor use, Progress& progress) {
   if (keepers.checkpoint && find_solver(settings.solver)->can.parts)
     LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
   if (keepers.cache) keepers.cache->open(bake.scene, progress);
-  LUXEL_TRY(TexelLayout layout, lay_out(settings, bake.scene, keepers, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out(settings, bake.scene, keepers, use, progress));
   bake.warnings.insert(bake.warnings.end(), layout.warnings.begin(), layout.warnings.end());
   LUXEL_TRY_STATUS(stopped(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
@@ -241,7 +246,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& wanted, const Ba
   LUXEL_TRY(const std::vector<uint32_t> masked, masked_lights(settings, bake.scene));
   LUXEL_TRY_STATUS(check_view(settings.view, bake.scene, settings.scene.string()));
   bake.triangles_of_file = scene::first_triangles(bake.scene).back();
-  LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
+  LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, LaysOutFor::bake, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
   PartStore* parts = keepers.checkpoint ? keepers.checkpoint->parts() : nullptr;
@@ -388,7 +393,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
                 settings.solver);
   Bake bake;
   LUXEL_TRY(bake.scene, load_scene(settings, bake.warnings, progress));
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, progress));
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, LaysOutFor::plan, progress));
   return solver.plan({bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
                      settings, progress);
 }

@@ -28,11 +28,13 @@ namespace {
 
 /// Samples of the first round, when an error is asked for.
 constexpr int kFirstSamples = 32;
-/// A trial lights one texel in so many, which costs as much of the bake.
-constexpr int kTrialPart = 100;
-/// Bakes below so many rays are over before anybody looks at the clock: what their light takes
-/// stays unknown.
-constexpr double kRaysWorthATrial = 2e7;
+/// A trial lights one texel in so many, which costs as much of the bake; of small maps one in so
+/// many at most.
+constexpr int kTrialPart = 100, kMostTrialPart = 25;
+/// Bakes below so many rays are over before anybody looks at the clock: no trial is worth it.
+constexpr double kRaysWorthATrial = 2e6;
+/// What comes after light may take so many times what is expected, and still end in time.
+constexpr double kSafeAfter = 1.25;
 /// What the first direct light and the first rays may take of a time budget.
 constexpr double kFirstShare = 0.3;
 
@@ -89,8 +91,7 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
                   const SolveStores& stores, const gather::GatherStores& own,
                   gather::GatherParams& params, std::vector<std::string>& warnings,
                   Progress& progress) {
-  const std::vector<Stage> after = stages_after_solving(in, settings);
-  progress.expect_at_end(after);
+  progress.expect_at_end(stages_after_solving(bake_size(in), settings));
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
   // A trial is the processor's, and says nothing of a device.
   const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0 && !stores.device &&
@@ -98,15 +99,18 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
   if (!trial && settings.time_budget_s <= 0) return {};
   // Each member makes its own trial, of the whole team's part.
   const int part = kTrialPart * (stores.team ? int(stores.team->size()) : 1);
-  LUXEL_TRY(gather::Forecast forecast, gather::forecast(in, params, own, part, progress));
+  const size_t fewest = std::min(gather::kFewestTried, in.elements.size() / kMostTrialPart);
+  LUXEL_TRY(gather::Forecast forecast, gather::forecast(in, params, own, {part, fewest}, progress));
   LUXEL_TRY(forecast, shared_out(stores.team, forecast, progress));
   progress.finish();
+  const std::vector<Stage> after = stages_after_solving(bake_size(in), settings, forecast.load);
+  progress.expect_at_end(after);
   if (settings.time_budget_s <= 0) {
-    progress.expect(stages_of(forecast));
+    progress.expect(stages_of(forecast, settings));
     return {};
   }
-  double left = settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
-  for (const Stage& stage : after) left -= stage.seconds;
+  double left =
+      seconds_left(settings.time_budget_s, progress.stages()) - kSafeAfter * seconds_of(after);
   LUXEL_TRY(left, first_of(stores.team, left, progress));
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(
@@ -296,7 +300,8 @@ Solver gather_solver() {
                   .keeps = true,
                   .device = true},
           .solve = solve_gather,
-          .plan = plan_gather};
+          .plan = plan_gather,
+          .usual = usual_gather};
 }
 
 }  // namespace luxel::pipeline

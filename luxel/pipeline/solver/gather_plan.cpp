@@ -18,14 +18,37 @@ constexpr int kPlanPart = 100;
 /// A trial of the rounds to an error lights one texel in so many: more of them, because some get
 /// many times the rays of others.
 constexpr int kRoundsPart = 16;
+/// What one core takes per ray in most scenes [s], and the parts of it.
+constexpr double kRaySeconds = 1.9e-7;
+constexpr double kDirectPart = 0.12, kSupersamplePart = 0.12, kTracePart = 0.76;
+/// Over what rays take: bounces in most scenes; the light of the denoiser's check; the walls that
+/// part its texels, which a ray beside each finds.
+constexpr double kBouncesOverRays = 0.08, kCheckOverRays = 0.04, kWallsOverRays = 0.03;
 
 }  // namespace
 
-std::vector<Stage> stages_of(const gather::Forecast& forecast) {
-  return {{"direct light", forecast.direct_s},
-          {"supersample", forecast.supersample_s},
-          {"trace rays", forecast.trace_s},
-          {"bounces", forecast.bounces_s}};
+std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings) {
+  std::vector<Stage> stages{{"direct light", forecast.direct_s},
+                            {"supersample", forecast.supersample_s},
+                            {"trace rays", forecast.trace_s},
+                            {"bounces", forecast.bounces_s}};
+  const double rays_s = forecast.direct_s + forecast.trace_s;
+  if (settings.denoise) stages.push_back({"check", kCheckOverRays * rays_s});
+  if (settings.repair_leaks) stages.push_back({"walls", kWallsOverRays * rays_s});
+  return stages;
+}
+
+std::vector<Stage> usual_gather(const BakeSettings& settings, double texels) {
+  if (adds_rounds(settings) || !settings.part.is_all()) return {};
+  const double rays = texels * (settings.samples + first_direct_samples(settings));
+  const double seconds = kRaySeconds * rays;
+  std::vector<Stage> stages{{"direct light", kDirectPart * seconds},
+                            {"supersample", kSupersamplePart * seconds},
+                            {"trace rays", kTracePart * seconds},
+                            {"bounces", kBouncesOverRays * seconds}};
+  // No walls: those of the layout would be taken for these.
+  if (settings.denoise) stages.push_back({"check", (kCheckOverRays + kWallsOverRays) * seconds});
+  return stages;
 }
 
 Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settings,
@@ -40,14 +63,15 @@ Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settin
   const gather::GatherParams params = gather_params(settings);
   const gather::GatherStores stores = gather_stores(settings);
   LUXEL_TRY(const gather::Forecast forecast,
-            gather::forecast(in, params, stores, kPlanPart, progress));
-  for (const Stage& stage : stages_of(forecast)) out.stages.push_back(stage);
+            gather::forecast(in, params, stores, {.part = kPlanPart}, progress));
+  for (const Stage& stage : stages_of(forecast, settings)) out.stages.push_back(stage);
   gather::RoundsForecast rounds;
   if (settings.max_error > 0) {
     LUXEL_TRY(rounds, gather::forecast_rounds(in, params, stores, kRoundsPart, progress));
     out.stages.push_back({"rounds", rounds.trace_s + rounds.bounces_s});
   }
-  for (const Stage& stage : stages_after_solving(in, settings)) out.stages.push_back(stage);
+  for (const Stage& stage : stages_after_solving(bake_size(in), settings, forecast.load))
+    out.stages.push_back(stage);
   for (const Stage& stage : out.stages) out.seconds += stage.seconds;
   if (settings.time_budget_s > 0) out.seconds = std::min(out.seconds, settings.time_budget_s);
   out.rays = forecast.rays + rounds.rays;

@@ -12,6 +12,8 @@ Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settin
                          Progress& progress);
 
 /// The stages of gather, and what they are expected to take.
-std::vector<Stage> stages_of(const gather::Forecast& forecast);
+std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings);
+/// UsualFunction of gather.
+std::vector<Stage> usual_gather(const BakeSettings& settings, double texels);
 
 }  // namespace luxel::pipeline

@@ -112,6 +112,24 @@ Option<P> resolution_option() {
   return row;
 }
 
+/// What one core takes per ray of a hemicube in most scenes [s].
+constexpr double kLookSeconds = 1.2e-7;
+/// The part of the elements that the first mesh has. Rough looks take a quarter of the last ones.
+constexpr double kFirstElements = 0.35;
+constexpr double kUsualElements = 20000;
+
+/// What is to come after the first looks is told anew by what those take.
+std::vector<Stage> usual_hemicube(const BakeSettings& settings, double) {
+  const hemicube::HemicubeParams params = hemicube_params(settings);
+  const double elements = params.max_elements > 0 ? double(params.max_elements) : kUsualElements;
+  const double last_s =
+      kLookSeconds * elements * 3 * double(params.resolution) * double(params.resolution);
+  if (!(params.max_error > 0)) return {{"hemicubes", last_s}};
+  return {{"hemicubes", kFirstElements * last_s / 4},
+          {"hemicubes", (1 - kFirstElements) * last_s / 4},
+          {"hemicubes", last_s}};
+}
+
 }  // namespace
 
 Options<hemicube::HemicubeParams> hemicube_options() {
@@ -159,6 +177,7 @@ Solver hemicube_solver() {
   return {.name = "hemicube",
           .can = {.direct_samples = true, .teams = true, .device = true, .vertex_light = true},
           .solve = solve_hemicube,
+          .usual = usual_hemicube,
           .options = options_of_solver("hemicube", kHemicubeHeading, hemicube_options()),
           .notes = {{"--direct-samples", "four times as many per element"}},
           .check = [](const BakeSettings& s) { return check_contradictions(s.own.of<P>()); }};

@@ -1,32 +1,85 @@
 #include "luxel/pipeline/solver/plan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/parallel.h"
+#include "luxel/pipeline/solver/solvers.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 
 namespace luxel::pipeline {
 namespace {
 
-/// Measured on one core of an AMD EPYC; short beside the light of all bakes that are worth a plan.
-constexpr double kDrawSeconds = 0.3, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
-/// Measured on the same: docs/method/denoise.md.
-constexpr double kDenoiseSecondsPerTexel = 1.3e-5;
+// Measured on a core of an AMD EPYC, in five scenes of shared/scenes.
+
+/// A view is chosen, and drawn.
+constexpr double kDrawSeconds = 0.3;
+constexpr double kSeamSecondsPerTexel = 1e-7, kSeamSecondsPerChart = 3e-5;
+constexpr double kWriteSecondsPerTexel = 4e-7;
+/// Texels of small charts have neighbours on many others, which take long to find.
+constexpr double kDenoiseSecondsPerTexel = 1.1e-5, kDenoiseSecondsPerChart = 1e-4;
+/// Layout: one thread makes charts and packs them, all look for walls and move samples.
+constexpr double kChartSecondsPerTriangle = 2e-6;
+constexpr double kPackSeconds = 0.03, kPackSecondsPerTriangle = 2e-6;
+constexpr double kWallSecondsPerTexel = 8e-7, kMoveSecondsPerTexel = 2e-6;
+/// The part of the square that charts cover, and triangles per chart.
+constexpr double kCovered = 0.7, kTrianglesPerChart = 4;
 
 }  // namespace
 
-std::vector<Stage> stages_after_solving(const light::TexelScene& in, const BakeSettings& settings) {
+BakeSize bake_size(const light::TexelScene& in) {
+  return {double(in.elements.size()), double(in.map.resolution), double(in.atlas.chart_count)};
+}
+
+std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings,
+                                        double load) {
   const double threads = double(thread_count());
-  const double square = double(in.map.resolution) * double(in.map.resolution);
-  std::vector<Stage> stages{{"seams", kSeamSecondsPerTexel * double(in.elements.size())},
-                            {"draw", kDrawSeconds / threads},
-                            {"write files", kWriteSecondsPerTexel * square}};
+  std::vector<Stage> stages;
   if (settings.denoise)
-    stages.insert(stages.begin(),
-                  {"denoise", kDenoiseSecondsPerTexel * double(in.elements.size()) / threads});
+    stages.push_back({"denoise", (kDenoiseSecondsPerTexel * size.texels +
+                                  kDenoiseSecondsPerChart * size.charts) /
+                                     threads});
+  stages.push_back(
+      {"seams", kSeamSecondsPerTexel * size.texels + kSeamSecondsPerChart * size.charts});
+  stages.push_back({"draw", kDrawSeconds / threads});
+  stages.push_back({"write files", kWriteSecondsPerTexel * size.side * size.side});
   if (settings.html) stages.back().seconds *= 2;
+  for (Stage& stage : stages) stage.seconds *= load;
   return stages;
+}
+
+void expect_usual_bake(const scene::Scene& scene, const BakeSettings& settings,
+                       Progress& progress) {
+  if (!settings.resolution || settings.pages.mode != atlas::PageMode::fixed) return;
+  const double side = *settings.resolution;
+  const double triangles = double(scene::first_triangles(scene).back());
+  const BakeSize size{kCovered * side * side * settings.pages.count, side,
+                      triangles / kTrianglesPerChart};
+  const std::vector<Stage> after = stages_after_solving(size, settings);
+  progress.expect_at_end(after);
+  if (settings.time_budget_s > 0)
+    return progress.expect_within(
+        std::max(0.0, seconds_left(settings.time_budget_s, progress.stages()) - seconds_of(after)));
+  const Solver& solver = *find_solver(settings.solver);
+  const std::vector<Stage> light =
+      solver.usual ? solver.usual(settings, size.texels) : std::vector<Stage>{};
+  if (light.empty()) return;
+  const double threads = double(thread_count());
+  std::vector<Stage> stages{
+      {"charts", kChartSecondsPerTriangle * triangles},
+      {"packing", kPackSeconds + kPackSecondsPerTriangle * triangles},
+      {"walls", kWallSecondsPerTexel * size.texels / threads},
+      {"samples", kMoveSecondsPerTexel * size.texels / threads},
+  };
+  for (const Stage& stage : light) stages.push_back({stage.name, stage.seconds / threads});
+  progress.expect(std::move(stages));
+}
+
+double seconds_of(std::span<const Stage> stages) {
+  double sum = 0;
+  for (const Stage& stage : stages) sum += stage.seconds;
+  return sum;
 }
 
 nlohmann::json to_json(const Plan& plan) {

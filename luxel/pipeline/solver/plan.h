@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <vector>
 
 #include "luxel/base/progress.h"
@@ -23,7 +24,22 @@ struct Plan {
 /// The object of `luxel bake --plan --json`.
 nlohmann::json to_json(const Plan& plan);
 
-/// Seams, preview and files, with what they are expected to take.
-std::vector<Stage> stages_after_solving(const light::TexelScene& in, const BakeSettings& settings);
+/// What stages beside light take follows from these.
+struct BakeSize {
+  double texels = 0, side = 0;  ///< side of the square
+  double charts = 0;
+};
+BakeSize bake_size(const light::TexelScene& in);
+
+/// Denoiser, seams, preview and files, with what they are expected to take on a machine that takes
+/// `load` times as long as an idle one.
+std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings,
+                                        double load = 1);
+
+double seconds_of(std::span<const Stage> stages);
+
+/// Tells `progress` what a bake takes of a scene that is not laid out yet: its time budget, or what
+/// texels and triangles take of most scenes, which the speed of each stage corrects.
+void expect_usual_bake(const scene::Scene& scene, const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -49,6 +49,15 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
   return out;
 }
 
+/// What one core takes per path in most scenes, and to spread a point over a texel [s].
+constexpr double kPathSeconds = 3e-6, kPointSeconds = 5e-6;
+
+std::vector<Stage> usual_reference(const BakeSettings& settings, double texels) {
+  const int points = std::min(first_supersample(settings), settings.samples);
+  return {{"footprints", points > 1 ? kPointSeconds * points * texels : 0},
+          {"trace paths", kPathSeconds * settings.samples * texels}};
+}
+
 }  // namespace
 
 Solver reference_solver() {
@@ -60,6 +69,7 @@ Solver reference_solver() {
                   .teams = true,
                   .device = true},
           .solve = solve_reference,
+          .usual = usual_reference,
           .notes = {{"--samples", "paths per texel"}}};
 }
 

@@ -33,11 +33,16 @@ struct OptionNote {
   std::string_view flag, text;
 };
 
+/// The stages of light with what they take of one core in most scenes [s], for as long as no trial
+/// tells; none where nobody knows.
+using UsualFunction = std::vector<Stage> (*)(const BakeSettings& settings, double texels);
+
 struct Solver {
   std::string_view name;
   Capabilities can{};
   SolveFunction solve = nullptr;
   PlanFunction plan = nullptr;      ///< null: it cannot say what it will take
+  UsualFunction usual = nullptr;    ///< null: nobody knows
   Options<BakeSettings> options{};  ///< that no other solver has; options_of_solver() makes them
   std::vector<OptionNote> notes{};
   /// Whether its options contradict each other; null: they cannot. Errors (bad_setting).

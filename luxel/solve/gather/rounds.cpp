@@ -26,15 +26,26 @@ constexpr double kAimedAt = 0.94;
 /// Over the square of the error that is asked for. What is nearly reached takes few rays.
 constexpr double kNoiseWorthAGuide = 3;
 
+/// What of the time left is not planned for: what takes how long is known from what has come.
+constexpr double kSpareTime = 0.1;
+/// The light that answers are made of, over all rays before it.
+constexpr double kAnswersOverRays = 0.05;
+
 /// How many rays the next round may have, such that it and the last bounces end in time: tracing
 /// takes as long per ray as the last round, and bounces grow with the number of all rays.
-double affordable_rays(const Progressive& light, double seconds_left) {
+double affordable_rays(const GatherParams& params, const Progressive& light, double seconds_left) {
   const double rays = double(light.hits.rays), bounces_s = light.bounced_s * (1 + kFineOverRough);
   if (seconds_left <= 0) return 0;
   // Where all rays were found, some are traced to know what they take.
   if (light.traced_rays == 0) return kSmallestRound * rays;
   const double per_ray = light.traced_s / double(std::max<uint64_t>(light.traced_rays, 1));
-  return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
+  const double answers_s = params.tells_answers ? kAnswersOverRays * per_ray : 0;
+  const double fixed_s = bounces_s + 2 * light.judged_s + answers_s * rays;
+  const double most =
+      ((1 - kSpareTime) * seconds_left - fixed_s) / (per_ray + answers_s + bounces_s / rays);
+  // A machine may become busier within a long round, and shorter ones tell: no round takes more
+  // than half of what is left, unless it is a small one.
+  return most > 0.5 * rays ? std::max(0.5 * most, 0.5 * rays) : most;
 }
 
 /// Samples that elements lack.
@@ -173,7 +184,8 @@ Result<bool> next_round(const Request& in, double seconds_left, Progressive& lig
   // A time budget takes both kinds of rays back to what it can pay for, and ends the rounds.
   double affordable = INFINITY;
   if (params.seconds > 0) {
-    LUXEL_TRY(affordable, first_of(in.stores.team, affordable_rays(light, seconds_left), progress));
+    LUXEL_TRY(affordable,
+              first_of(in.stores.team, affordable_rays(params, light, seconds_left), progress));
     if (affordable < kSmallestRound * double(light.hits.rays)) return false;
   }
   const bool is_rms = params.error_measure == ErrorMeasure::rms;

@@ -199,8 +199,10 @@ Result<light::Answers> answers_of(const Request& in, const Progressive& light,
 
 Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
+  const auto start = Clock::now();
   LUXEL_TRY_STATUS(judge(in, light, progress));
   LUXEL_TRY_STATUS(measure_noise(in, light, progress));
+  light.judged_s = seconds_since(start);
   show(in.observer, light, false);
   return {};
 }

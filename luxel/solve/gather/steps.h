@@ -60,6 +60,7 @@ struct Progressive {
   std::optional<ReadCheck> check;      ///< places at which what rays read is checked
   std::vector<Rgb> first_change;       ///< BounceParams
   double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced
+  double judged_s = 0;                 ///< to know how far the light of the last round is off
   uint64_t traced_rays = 0, traced_samples = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "luxel/base/parallel.h"
 #include "luxel/light/direct_light.h"
 #include "luxel/solve/hemicube/bisect.h"
 #include "luxel/transport/covers.h"
@@ -23,6 +24,8 @@ constexpr float kDark = 0.1f;
 /// No edge becomes shorter than this part of the first mesh's mean one: the border of a hard shadow
 /// would take all elements there are.
 constexpr double kSmallestPart = 1.0 / 32;
+/// The last looks have twice the pixels along each edge.
+constexpr double kFineOverRoughLook = 4;
 
 float luminance_of(const Field& field, uint32_t element) {
   return luminance(field.irradiance[element]);
@@ -240,6 +243,20 @@ Status light_new_elements(const SendingScene& around, const HemicubeParams& para
   return {};
 }
 
+/// Tells what is to come: this round and the others, then the last looks of all elements, through
+/// four times the pixels, by what looks have taken so far. Rough looks of a round see a part of the
+/// elements, and each element is seen by one round.
+void expect_looks(size_t now, size_t goal, size_t max_elements, const Solution& s,
+                  Progress& progress) {
+  const double thread_s = s.seconds.visibility + s.seconds.summation;
+  const double each_s = thread_s / double(thread_count()) / double(std::max<size_t>(now, 1));
+  std::vector<Stage> looks;
+  for (const size_t elements : {goal - now, max_elements - goal})
+    if (elements > 0) looks.push_back({"hemicubes", each_s * double(elements)});
+  looks.push_back({"hemicubes", kFineOverRoughLook * each_s * double(max_elements)});
+  progress.expect(std::move(looks));
+}
+
 }  // namespace
 
 Status refine(const SendingScene& around, const HemicubeParams& params, size_t max_elements,
@@ -254,11 +271,14 @@ Status refine(const SendingScene& around, const HemicubeParams& params, size_t m
     const size_t more = std::max<size_t>(64, size_t(kGrowth * double(now)));
     const size_t goal = std::min(max_elements, now + more);
     if (!cut_worst(s.field, params, goal, shortest_m, bisector)) break;
+    expect_looks(now, goal, max_elements, s, progress);
     const Receivers old = std::move(s.field.receivers);
     s.field.receivers = make_receivers(around.scene, s.field.mesh, params.elements);
     const std::vector<uint32_t> unknown = carry_over(old, s.field.receivers, s);
     LUXEL_TRY_STATUS(light_new_elements(around, params, unknown, sent, s, progress));
   }
+  const size_t all = s.field.receivers.size();
+  expect_looks(all, all, all, s, progress);
   return {};
 }
 

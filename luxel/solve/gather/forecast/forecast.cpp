@@ -161,10 +161,10 @@ Status try_bounces(Trial& trial, Forecast& out) {
 }  // namespace
 
 Result<Forecast> forecast(const light::TexelScene& in, const GatherParams& params,
-                          const GatherStores& stores, int part, Progress& progress) {
+                          const GatherStores& stores, TrialSize size, Progress& progress) {
   const size_t n = in.elements.size();
   const size_t most = size_t(kTrialRays / double(params.samples));
-  const size_t count = std::min({n, most, std::max(kFewestTried, n / size_t(part))});
+  const size_t count = std::min({n, most, std::max(size.fewest, n / size_t(size.part))});
   Trial trial{.in = in,
               .params = params,
               .stores = stores,
@@ -175,7 +175,12 @@ Result<Forecast> forecast(const light::TexelScene& in, const GatherParams& param
   Forecast out;
   LUXEL_TRY_STATUS(try_direct(trial, out, own));
   LUXEL_TRY_STATUS(try_supersample(trial, out, own));
+  const std::clock_t worked = std::clock();
   LUXEL_TRY_STATUS(try_tracing(trial, out, own));
+  const double worked_s = double(std::clock() - worked) / CLOCKS_PER_SEC;
+  if (worked_s > 0)
+    out.load = std::max(1.0, out.trace_s / trial.scale * double(thread_count()) / worked_s);
+  out.supersample_s *= out.load;
   LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY_STATUS(try_bounces(trial, out));
   return out;

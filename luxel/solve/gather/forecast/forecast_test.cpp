@@ -21,7 +21,7 @@ TEST(Forecast, CountsTheRaysAndHitsOfTheWhole) {
   GatherParams params;
   params.samples = 64, params.direct_samples = 16, params.supersample = 16;
   Progress progress;
-  const auto forecast = gather::forecast(scene_of(*room), params, {}, 5, progress);
+  const auto forecast = gather::forecast(scene_of(*room), params, {}, {.part = 5}, progress);
   ASSERT_TRUE(forecast);
   const Gather whole = solve(*room, params);
   EXPECT_NEAR(forecast->rays / double(whole.rays), 1, 0.15);

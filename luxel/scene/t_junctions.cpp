@@ -183,9 +183,17 @@ class JunctionCloser {
     OnEdges out;
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t a = c[k], b = c[(k + 1) % 3];
+      if (is_flat_over(i, a, b, c[(k + 2) % 3])) continue;
       out[k] = on_edge(i, a, b, is_within(i, triangle, a, b) ? all_ : new_);
     }
     return out;
+  }
+
+  /// Whether a triangle's third corner lies on its edge itself: parts of it would have no area.
+  bool is_flat_over(uint32_t i, uint32_t a, uint32_t b, uint32_t apex) const {
+    const DVec3 from = to_double(world(i, a)), along_edge = to_double(world(i, b)) - from;
+    return length(cross(to_double(world(i, apex)) - from, along_edge)) <=
+           2 * tolerance_ * length(along_edge);
   }
 
   /// Whether an edge is not a part of one that there was before.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/scene/pieces.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/scene/sides.h"
 #include "tests/surfaces.h"
@@ -61,6 +62,20 @@ TEST(TJunctions, NeighboursGetNewVertices) {
   const Mesh& sheet = scene.meshes[scene.instances[4].mesh];
   ASSERT_EQ(sheet.triangles.size(), 6u);
   for (uint32_t t = 0; t < 6; ++t) EXPECT_EQ(sheet.other_side[sheet.other_side[t]], t);
+}
+
+/// A sliver whose new corner lies on its own edge stays as it is: parts of it would have no area.
+/// The triangle below it gets the vertex.
+TEST(TJunctions, SliversAreNotDivided) {
+  Scene scene;
+  add_material(scene, "stone", {0.5f, 0.5f, 0.5f});
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, -1, 0}, {0.4f, 1e-8f, 0}};
+  mesh.triangles = {{0, 1, 3}, {1, 0, 2}}, mesh.triangle_material = {0, 0};
+  place(scene, mesh);
+  const auto part_of = close_t_junctions(scene, {{3, mesh.triangles}});
+  EXPECT_EQ(part_of[0], (std::vector<uint32_t>{1}));
+  EXPECT_EQ(scene.meshes[0].triangles[0], (Corners{0, 1, 3}));
 }
 
 }  // namespace

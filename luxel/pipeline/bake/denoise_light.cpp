@@ -7,6 +7,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
 #include "luxel/light/supersample.h"
+#include "luxel/pipeline/bake/layers.h"
 #include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/post/denoise.h"
 
@@ -52,6 +53,16 @@ std::optional<double> error_by_answers(const TexelLight& light) {
   return std::hypot(std::sqrt(std::max(0.0, square)) / mean, light.relative_unseen);
 }
 
+/// What is believed of the variance of each layer's luminance, at most: that of all light. Filters
+/// lower it to what neighbours show.
+std::vector<float> variance_of_layers(const TexelLight& light) {
+  std::vector<float> out;
+  if (light.layer_irradiance.empty()) return out;
+  out = light.variance;
+  for (size_t i = 0; i < light.direct_variance.size(); ++i) out[i] += light.direct_variance[i];
+  return out;
+}
+
 }  // namespace
 
 Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
@@ -76,9 +87,12 @@ Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
   };
   if (!light.direct.empty())
     parts.push_back({light.direct, light.direct_variance, true, look_again});
+  const std::vector<float> of_layers = variance_of_layers(light);
+  for (std::vector<Rgb>& layer : light.layer_irradiance) parts.push_back({layer, of_layers});
   LUXEL_TRY_STATUS(post::denoise(places, parts, params, progress, team));
   for (size_t i = 0; i < light.direct.size(); ++i) rest[i] += light.direct[i];
   light.irradiance = std::move(rest);
+  fit_layers(light.irradiance, light.layer_irradiance);
   light.delivered_error = error_by_answers(light);
   return {};
 }

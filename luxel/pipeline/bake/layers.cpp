@@ -35,15 +35,20 @@ Status stitch_layers(const atlas::TexelMap& map, std::span<const post::Seam> sea
                      std::span<const Rgb> after, std::span<std::vector<Rgb>> layers,
                      Progress& progress) {
   LUXEL_TRY_STATUS(post::stitch_layers(map, seams, params, before, layers, progress));
-  parallel_for(after.size(), 4096, [&](size_t begin, size_t end) {
+  fit_layers(after, layers);
+  return {};
+}
+
+void fit_layers(std::span<const Rgb> whole, std::span<std::vector<Rgb>> layers) {
+  if (layers.empty()) return;
+  parallel_for(whole.size(), 4096, [&](size_t begin, size_t end) {
     std::vector<Rgb> own(layers.size());
     for (size_t i = begin; i < end; ++i) {
       for (size_t l = 0; l < own.size(); ++l) own[l] = layers[l][i];
-      light::share_out(after[i], own);
+      light::share_out(whole[i], own);
       for (size_t l = 0; l < own.size(); ++l) layers[l][i] = own[l];
     }
   });
-  return {};
 }
 
 std::vector<BakedLayer> bake_layers(const scene::Scene& scene, const atlas::Atlas& atlas,

@@ -37,6 +37,9 @@ Status stitch_layers(const atlas::TexelMap& map, std::span<const post::Seam> sea
                      std::span<const Rgb> after, std::span<std::vector<Rgb>> layers,
                      Progress& progress);
 
+/// Makes layers add up to the whole's light: what that is off their sum goes to each in proportion.
+void fit_layers(std::span<const Rgb> whole, std::span<std::vector<Rgb>> layers);
+
 /// The lightmaps of the layers of `light`, which are used up, with `rings` of dilation.
 std::vector<BakedLayer> bake_layers(const scene::Scene& scene, const atlas::Atlas& atlas,
                                     const atlas::TexelMap& map, int rings, TexelLight& light);

@@ -28,8 +28,8 @@ void set_quality(Quality quality, const std::function<bool(std::string_view)>& i
     settings.direct_samples = follow ? std::optional<int>() : numbers.direct_samples;
   if (!is_given("--supersample"))
     settings.supersample = follow ? std::optional<int>() : numbers.supersample;
-  const bool as_sampled = is_given("--samples") || settings.max_error > 0 ||
-                          settings.time_budget_s > 0 || settings.layers != light::LayerMode::none;
+  const bool as_sampled =
+      is_given("--samples") || settings.max_error > 0 || settings.time_budget_s > 0;
   if (!is_given("--denoise") && !is_given("--no-denoise") && !as_sampled)
     settings.denoise = numbers.denoise;
 }

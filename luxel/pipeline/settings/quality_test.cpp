@@ -60,9 +60,12 @@ TEST(Quality, LightOfGivenSamplesStaysAsItIs) {
   BakeSettings asked;
   asked.max_error = 0.02;
   EXPECT_FALSE(set(Quality::draft, {"--max-error"}, asked).denoise);
+}
+
+TEST(Quality, LayersAreDenoisedAsAllLightIs) {
   BakeSettings layers;
   layers.layers = light::LayerMode::per_light;
-  EXPECT_FALSE(set(Quality::good, {}, layers).denoise);
+  EXPECT_TRUE(set(Quality::good, {}, layers).denoise);
 }
 
 }  // namespace

@@ -32,10 +32,9 @@ Status check_pages(const BakeSettings& s) {
 /// What each light's own lightmap is not made for yet.
 Status check_layers(const BakeSettings& s) {
   if (s.layers == light::LayerMode::none) return {};
-  const char* other = s.denoise                            ? "--denoise"
-                      : s.directional != Directional::none ? "--directional"
-                      : s.probe_spacing_m > 0              ? "--probes"
-                                                           : nullptr;
+  const char* other = s.directional != Directional::none ? "--directional"
+                      : s.probe_spacing_m > 0            ? "--probes"
+                                                         : nullptr;
   if (other)
     return fail(ErrorCode::bad_setting,
                 "--layers {} cannot be combined with {}, which needs all light at once; leave one "

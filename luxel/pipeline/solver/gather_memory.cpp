@@ -75,7 +75,9 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
                         gather::kEndCountBytesPerElement * n + kept.bouncing;
   const uint64_t judged =
       traced + (gather::kBouncedBytesPerElement + gather::kJudgedBytesPerElement) * n;
-  const uint64_t denoised = settings.denoise ? (kLightBytesPerElement + kDenoise) * n : 0;
+  const uint64_t of_layers = layers > 0 ? sizeof(float) : 0;  // one variance for all of them
+  const uint64_t denoised =
+      settings.denoise ? (kLightBytesPerElement + kDenoise + of_layers) * n : 0;
   const uint64_t turned = settings.directional == Directional::none ? 0 : kDirection * n;
   const uint64_t files =
       (kLightBytesPerElement - (in_files && !shows ? kPartsBytesPerElement : 0)) * n + turned +

@@ -190,7 +190,7 @@ TEST(Progress, WhatIsToldAnewCountsAsItIs) {
   Progress progress;
   progress.expect({{"lay out", 100}, {"trace", 50}});
   progress.begin("lay out", 0);
-  progress.finish();
+  progress.begin("trial", 0);
   progress.expect({{"trace", 50}});
   EXPECT_DOUBLE_EQ(progress.snapshot().seconds_left, 50);
 }

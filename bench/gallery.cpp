@@ -23,9 +23,9 @@
 namespace luxel::bench {
 namespace {
 
-constexpr display::DrawParams kPicture{.width = 960, .height = 540};
+const display::DrawParams kPicture{.width = 960, .height = 540};
 /// The pictures that are compared: small, so that many paths fall into each pixel.
-constexpr display::DrawParams kCompared{.width = 320, .height = 180};
+const display::DrawParams kCompared{.width = 320, .height = 180};
 /// Two independent pictures get so many paths per pixel at a time, until FLIP between both, which
 /// is noise of the paths, is no more than kNoise, or they have kMostPaths each.
 constexpr int kPathsAtOnce = 256, kMostPaths = 5 * kPathsAtOnce;

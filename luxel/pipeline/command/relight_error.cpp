@@ -192,6 +192,8 @@ Result<IndirectError> indirect_error(const RelitPlaces& relit, int paths, uint64
   return error_between(relit.indirect, a, b);
 }
 
-int stages_of_indirect_error(size_t lights) { return lights == 0 ? 2 : 4; }
+std::vector<Stage> stages_of_indirect_error(size_t lights) {
+  return std::vector<Stage>(lights == 0 ? 2 : 4, {"trace paths", 1});
+}
 
 }  // namespace luxel::pipeline

@@ -50,7 +50,8 @@ struct IndirectError {
 /// Twice so many paths from each place tell. Errors: cancelled.
 Result<IndirectError> indirect_error(const RelitPlaces& relit, int paths, uint64_t seed,
                                      Progress& progress);
-/// How many stages of `progress` it has, with so many punctual lights.
-int stages_of_indirect_error(size_t lights);
+/// The stages of `progress` that it begins, with so many punctual lights: each is as long as the
+/// others.
+std::vector<Stage> stages_of_indirect_error(size_t lights);
 
 }  // namespace luxel::pipeline

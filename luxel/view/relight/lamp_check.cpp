@@ -1,5 +1,6 @@
 #include "luxel/view/relight/lamp_check.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -47,13 +48,7 @@ class CheckThread : public LampCheck {
     thread_.join();
   }
 
-  float share() const override {
-    const Progress::Snapshot at = progress_.snapshot();
-    if (at.stage_index < 0 || at.total == 0) return 0;
-    const auto part = float(double(at.done) / double(at.total));
-    return (float(at.stage_index) + part) /
-           float(pipeline::stages_of_indirect_error(shining(now_).size()));
-  }
+  float share() const override { return std::max(0.0f, float(progress_.snapshot().share)); }
   std::optional<Result<pipeline::IndirectError>> result() const override {
     const std::scoped_lock lock(mutex_);
     return result_;
@@ -75,6 +70,7 @@ class CheckThread : public LampCheck {
     scene::Scene scene = read_->scene;
     scene.lights = shining(now_), scene.background = now_.background;
     for (scene::Material& m : scene.materials) m.emission = emission_now(m, now_, baked_);
+    progress_.expect(pipeline::stages_of_indirect_error(scene.lights.size()));
     return pipeline::indirect_error(
         {scene,
          *read_->tracer,

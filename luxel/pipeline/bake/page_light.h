@@ -1,5 +1,4 @@
 // The light that preview.png and view.html look up: the lightmap's, and some where it has none.
-// none.
 #pragma once
 
 #include <vector>

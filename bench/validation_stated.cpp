@@ -66,7 +66,7 @@ Claim claim_of(std::string_view solver) {
   return is_measured ? Claim::bound : Claim::estimate;
 }
 
-/// What a bake of this light states, and what is true.
+/// The error that a bake of this light states, and the true one.
 Result<validate::StatedError> stated_by_bake(const JudgedScene& s,
                                              const pipeline::TexelLight& light, double stated,
                                              Progress& progress) {
@@ -213,7 +213,7 @@ std::vector<validate::Compared> only(const Account& account, validate::Hard hard
 
 const char* text_of(Claim claim) { return claim == Claim::bound ? "bound" : "estimate"; }
 
-/// How often errors hold in rooms.
+/// A table of how often errors hold in rooms.
 std::string table_of_rooms(const Accounts& accounts) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& [name, account] : accounts) {
@@ -227,7 +227,7 @@ std::string table_of_rooms(const Accounts& accounts) {
       rows);
 }
 
-/// How often they hold in hard scenes, of each kind and of all.
+/// A table of how often they hold in hard scenes, of each kind and of all.
 std::string table_of_hard_scenes(const Accounts& accounts) {
   std::vector<std::string> columns{"stated error", "scenes", "holds"};
   for (const validate::Hard hard : validate::kHard) columns.emplace_back(validate::name_of(hard));
@@ -247,7 +247,7 @@ std::string table_of_hard_scenes(const Accounts& accounts) {
   return rows.empty() ? "" : markdown_table(columns, rows);
 }
 
-/// What is hard about scenes.
+/// The page's words on what is hard about scenes.
 constexpr const char* kAboutHardScenes =
     "\nHard scenes are as many, of seven kinds in turn:\n\n"
     "- *slats*: direct light falls through a row of slats, or through rings.\n"

@@ -86,7 +86,7 @@ class ProgressLine {
   }
   static std::string left_text(const Progress::Snapshot& now) {
     if (now.seconds_left >= 0) return "  " + clock_text(now.seconds_left) + " left";
-    // What was there already has taken no time.
+    // Work that was kept from before has taken no time.
     const double done = double(now.done - now.skipped), total = double(now.total - now.skipped);
     const double share = total > 0 ? done / total : 0;
     // Long work has an estimate early, too.

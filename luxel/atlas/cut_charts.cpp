@@ -92,7 +92,7 @@ class PairPlaces {
   }
 
   double distance() const { return distance_; }  ///< of a typical pair's points [m]
-  /// Whether some lie near a line from a to b.
+  /// True where some lie near a line from a to b.
   bool is_near(DVec3 a, DVec3 b) const {
     const DVec3 along = b - a;
     const double length2 = dot(along, along), reach = kNear * distance_;
@@ -162,7 +162,7 @@ class Cutter {
     divide(above, upper);
   }
 
-  /// What lies above the plane gets a new label, which is returned. Triangles that are not near any
+  /// All above the plane gets a new label, which is returned. Triangles that are not near any
   /// pair are not cut: they lie where most of them does.
   uint32_t apply(uint32_t piece, const Plane& world, const PairPlaces& places) {
     const Plane plane = scene::plane_in_object(world, world_from_object_);

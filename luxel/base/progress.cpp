@@ -139,17 +139,17 @@ double Progress::seconds_left_now(const Snapshot& s) const {
 
 double Progress::share_now(const Snapshot& s) const {
   if (s.seconds_left >= 0) {
-    // What is left of the work falls to zero as evenly as the time left does. If that is L now and
-    // was L + dt when somebody asked before, L / (L + dt) remains.
+    // The share of the work that is left falls to zero as evenly as the time left does. If that is
+    // L now and was L + dt when somebody asked before, L / (L + dt) remains.
     const double now_s = seconds_since(start_), before_s = share_ < 0 ? 0 : share_s_;
     const double time = s.seconds_left + now_s - before_s;
     const double share = 1 - (1 - std::max(share_, 0.0)) * (time > 0 ? s.seconds_left / time : 0);
-    // What runs is not yet done.
+    // A running stage is not yet done.
     share_ = std::max(share_, running_ ? std::min(share, kMostWhileRunning) : share);
     share_s_ = now_s;
   }
   if (share_ >= 0) return share_;
-  // What comes before the end is not known yet.
+  // The stages before the end are not known yet.
   if (!expected_at_end_.empty()) return -1;
   return s.total > 0 ? std::min(1.0, double(s.done) / double(s.total)) : -1;
 }

@@ -52,9 +52,9 @@ class Progress {
     advance(units);
   }
 
-  /// What stages to come are expected to take, in order, instead of what was said before: by all
-  /// that is known now, so that what earlier stages took counts no more. A stage that comes
-  /// unexpected takes no place.
+  /// The seconds that stages to come are expected to take, in order, instead of what was said
+  /// before: by all that is known now, so that what earlier stages took counts no more. A stage
+  /// that comes unexpected takes no place.
   void expect(std::vector<Stage> stages);
   /// Stages that come after all others, with what they are expected to take. They alone say nothing
   /// about what comes before them.
@@ -84,9 +84,10 @@ class Progress {
     double stage_seconds = 0;
     int stage_index = -1;
     double seconds_left = -1;  ///< of all that is expected; < 0: not known
-    /// Of all work, which never falls; of the stage alone where the end is not known; < 0: neither
-    /// is known. At first it is the time taken over that and the time left. Then it grows as it
-    /// must to be 1 in the end, so that an estimate that is wrong for a moment does not move it.
+    /// The share of all work, which never falls; of the stage alone where the end is not known; <
+    /// 0: neither is known. At first it is the time taken over that and the time left. Then it
+    /// grows as it must to be 1 in the end, so that an estimate that is wrong for a moment does not
+    /// move it.
     double share = -1;
   };
   /// The state now. Thread-safe.

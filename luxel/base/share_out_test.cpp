@@ -41,7 +41,7 @@ TEST(ShareOut, IsAllOfOneProcessWithoutATeam) {
   EXPECT_THAT(times, Each(1));
 }
 
-// What is dear lies together: a part of the pieces says what all take when it has some from
+// Dear pieces lie together: a part of the pieces says what all take when it has some from
 // everywhere. Of 20 that follow each other, each fifth of the pieces has one or more.
 TEST(ShareOut, TakesPiecesFromEverywhere) {
   constexpr size_t kPieces = 1000;

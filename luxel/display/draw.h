@@ -13,7 +13,7 @@
 
 namespace luxel::display {
 
-/// What a ray of the camera sees behind all surfaces.
+/// Radiance that a ray of the camera sees behind all surfaces.
 using SeenBehind = std::function<Rgb(const trace::Ray&)>;
 
 /// The size of a picture [pixels], and its rays.

@@ -14,7 +14,7 @@ float spline(float away) {
   return d < 1.5f ? 0.5f * (1.5f - d) * (1.5f - d) : 0;
 }
 
-/// Whether the 3 x 3 texels around one of the 4 x 4 are all inside.
+/// True where the 3 x 3 texels around one of the 4 x 4 are all inside.
 bool is_surrounded(const std::array<bool, 16>& inside, size_t x, size_t y) {
   for (size_t j = y - 1; j <= y + 1; ++j)
     for (size_t i = x - 1; i <= x + 1; ++i)

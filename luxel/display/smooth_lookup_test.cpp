@@ -123,7 +123,8 @@ image::Image sun_edge(int side) {
   return map;
 }
 
-/// How far the line at which `at(x, y)` falls below a tenth is off the straight one, in texels.
+/// The distance by which the line at which `at(x, y)` falls below a tenth is off the straight one,
+/// in texels.
 template <class At>
 float teeth(const At& at, int side) {
   float least = INFINITY, most = -INFINITY;

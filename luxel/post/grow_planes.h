@@ -42,7 +42,7 @@ struct Planes {
   std::optional<std::vector<uint32_t>> own_squares{};
 };
 
-/// Of Progress, per texel that has noise; as kNeighbourhoodUnits.
+/// Units of Progress per texel that has noise; as kNeighbourhoodUnits.
 inline uint64_t grow_units(float radius) {
   const uint64_t across = 2 * uint64_t(radius) + 1;
   return across * ((across + 7) / 8) + 4;

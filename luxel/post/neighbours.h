@@ -33,7 +33,7 @@ struct Neighbourhood {
   std::vector<FarBlock> far;
 };
 
-/// Of Progress, per texel: a unit is what one texel takes of a window in eight lanes.
+/// Units of Progress per texel: a unit is what one texel takes of a window in eight lanes.
 inline constexpr uint64_t kNeighbourhoodUnits = 40;
 
 /// Members of a team share the texels out; null: there is none. Errors: cancelled, another member

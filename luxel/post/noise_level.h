@@ -10,7 +10,7 @@ struct NoiseLevel {
   std::vector<Rgb> per_channel;  ///< variance of each channel over that of luminance
 };
 
-/// Of Progress, per texel; as kNeighbourhoodUnits.
+/// Units of Progress per texel; as kNeighbourhoodUnits.
 inline constexpr uint64_t kNoiseLevelUnits = 35;
 
 /// A solver's variances are estimates themselves, and gather's are upper bounds: it takes

@@ -10,8 +10,8 @@
 namespace luxel::scene {
 namespace {
 
-/// How far rounding moves a vertex, relative to the largest coordinate: two units in the last
-/// place, twice, for the ends of an edge are rounded, too.
+/// The distance by which rounding moves a vertex, relative to the largest coordinate: two units in
+/// the last place, twice, for the ends of an edge are rounded, too.
 constexpr double kRoundingOfCuts = 1.0 / (1 << 22);
 
 /// Pieces of one triangle and group around a vertex: what they cover, as a sum of normals as long

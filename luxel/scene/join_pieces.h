@@ -8,7 +8,7 @@
 
 namespace luxel::scene {
 
-/// What is known of the triangles of a mesh that has been cut, per triangle.
+/// The origin and the group of each triangle of a mesh that has been cut.
 struct CutTriangles {
   std::vector<uint32_t> part_of;  ///< the number it had before; that of a whole one is its own
   std::vector<uint32_t> group;    ///< pieces of different groups stay apart

@@ -189,14 +189,14 @@ class JunctionCloser {
     return out;
   }
 
-  /// Whether a triangle's third corner lies on its edge itself: parts of it would have no area.
+  /// True where a triangle's third corner lies on its edge itself: parts of it would have no area.
   bool is_flat_over(uint32_t i, uint32_t a, uint32_t b, uint32_t apex) const {
     const DVec3 from = to_double(world(i, a)), along_edge = to_double(world(i, b)) - from;
     return length(cross(to_double(world(i, apex)) - from, along_edge)) <=
            2 * tolerance_ * length(along_edge);
   }
 
-  /// Whether an edge is not a part of one that there was before.
+  /// True where an edge is not a part of one that there was before.
   bool is_within(uint32_t i, uint32_t triangle, uint32_t a, uint32_t b) const {
     if (before_[i].whole.empty()) return false;
     const Corners& whole = before_[i].whole[triangle];

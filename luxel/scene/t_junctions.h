@@ -10,10 +10,10 @@
 
 namespace luxel::scene {
 
-/// How far off an edge a vertex lies on it, in diagonals of the scene.
+/// A vertex so far off an edge still lies on it, in diagonals of the scene.
 inline constexpr double kOnEdge = 1e-6;
 
-/// What an instance had before its mesh was cut.
+/// An instance before its mesh was cut.
 struct Uncut {
   uint32_t vertices = 0;  ///< the first ones of its mesh; the others are new
   /// Per triangle of the mesh as it is, the corners of the one it is a part of; empty: none was

@@ -9,7 +9,7 @@
 
 namespace luxel::validate {
 
-/// What is hard about a scene.
+/// The hard thing about a scene.
 enum class Hard : uint8_t {
   nothing,   ///< a room of boxes, plates, walls and slivers
   slats,     ///< direct light falls through a row of slats, or through rings

@@ -26,7 +26,7 @@ TEST(StatedErrors, RandomScenesAreDecidedByTheirSeed) {
   EXPECT_NE(first.scene.meshes[0].positions, other.scene.meshes[0].positions);
 }
 
-// What a kind of scene is there for, in its first scenes of 32 x 32 texels.
+// Each kind of scene has what it is there for, in its first scenes of 32 x 32 texels.
 TEST(StatedErrors, HardScenesAreWhatTheySay) {
   Progress progress;
   for (const Hard hard : kHard)
@@ -48,7 +48,8 @@ TEST(StatedErrors, HardScenesAreWhatTheySay) {
     }
 }
 
-// Of four texels of light 1, which are right, a quarter of one belongs to a chart whose light is 3.
+// There are four texels of light 1, which are right. A quarter of one belongs to a chart whose
+// light is 3.
 TEST(StatedErrors, CountPartsOfTexelsByTheirAreas) {
   const std::vector<Rgb> one(4, {1, 1, 1});
   const Judged judged{one, one, std::vector<uint8_t>(4), std::vector<Rgb>(4)};

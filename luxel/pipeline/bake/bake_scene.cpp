@@ -110,7 +110,7 @@ std::optional<std::string> ignored_density(const scene::Scene& scene, const atla
       first->name);
 }
 
-/// What a layout is for.
+/// The use of a layout.
 enum class LaysOutFor { bake, plan };
 
 /// Splits sides and lays out what was read.

@@ -53,7 +53,7 @@ std::optional<double> error_by_answers(const TexelLight& light) {
   return std::hypot(std::sqrt(std::max(0.0, square)) / mean, light.relative_unseen);
 }
 
-/// What is believed of the variance of each layer's luminance, at most: that of all light. Filters
+/// The variance that each layer's luminance may have at most: that of all light. Filters
 /// lower it to what neighbours show.
 std::vector<float> variance_of_layers(const TexelLight& light) {
   std::vector<float> out;

@@ -17,7 +17,7 @@ constexpr int kGroundSide = 144, kRaysToSky = 64, kRaysToSuns = 16;
 /// In diagonals of the scene's box: half the side, and how far the ground lies below the scene, so
 /// that a bottom that stands on it is above it.
 constexpr float kHalfSide = 1.25f, kBelow = 1e-4f;
-/// Of the half side: where shadows begin to fade out. They are gone at its end.
+/// The part of the half side where shadows begin to fade out. They are gone at its end.
 constexpr float kFadesFrom = 0.6f;
 
 /// A floor is level and among the lowest quarter of a scene, and a fifth of what is seen from

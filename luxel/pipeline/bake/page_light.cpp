@@ -45,7 +45,7 @@ std::vector<uint32_t> dark_texels(const Bake& bake) {
   return out;
 }
 
-/// What dark texels reach, or 0 where that is not known, and the cells of the farthest.
+/// The reach of dark texels, or 0 where that is not known, and the cells of the farthest.
 struct Reaches {
   std::vector<float> of;  ///< [m]
   Cells cells;

@@ -33,7 +33,7 @@ constexpr int kFirstSamples = 32;
 constexpr int kTrialPart = 100, kMostTrialPart = 25;
 /// Bakes below so many rays are over before anybody looks at the clock: no trial is worth it.
 constexpr double kRaysWorthATrial = 2e6;
-/// What comes after light may take so many times what is expected, and still end in time.
+/// Stages after light may take so many times what is expected, and still end in time.
 constexpr double kSafeAfter = 1.25;
 /// What the first direct light and the first rays may take of a time budget.
 constexpr double kFirstShare = 0.3;

@@ -18,7 +18,7 @@ constexpr int kPlanPart = 100;
 /// A trial of the rounds to an error lights one texel in so many: more of them, because some get
 /// many times the rays of others.
 constexpr int kRoundsPart = 16;
-/// What one core takes per ray in most scenes [s], and the parts of it.
+/// The time of one core per ray in most scenes [s], and the parts of it.
 constexpr double kRaySeconds = 1.9e-7;
 constexpr double kDirectPart = 0.12, kSupersamplePart = 0.12, kTracePart = 0.76;
 /// Over what rays take: bounces in most scenes; the light of the denoiser's check; the walls that

@@ -112,13 +112,13 @@ Option<P> resolution_option() {
   return row;
 }
 
-/// What one core takes per ray of a hemicube in most scenes [s].
+/// The time of one core per ray of a hemicube in most scenes [s].
 constexpr double kLookSeconds = 1.2e-7;
 /// The part of the elements that the first mesh has. Rough looks take a quarter of the last ones.
 constexpr double kFirstElements = 0.35;
 constexpr double kUsualElements = 20000;
 
-/// What is to come after the first looks is told anew by what those take.
+/// The first looks tell anew how long those after them take.
 std::vector<Stage> usual_hemicube(const BakeSettings& settings, double) {
   const hemicube::HemicubeParams params = hemicube_params(settings);
   const double elements = params.max_elements > 0 ? double(params.max_elements) : kUsualElements;

@@ -80,7 +80,7 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   return out;
 }
 
-/// What one core takes in most scenes [s]: per ray of a patch, and per patch to make it; per texel
+/// The time of one core in most scenes [s]: per ray of a patch, and per patch to make it; per texel
 /// for its direct light and to read patches.
 constexpr double kFactorSeconds = 1.9e-7, kPatchSeconds = 1.1e-4;
 constexpr double kTexelSeconds = 3e-5;

@@ -24,7 +24,7 @@ struct Plan {
 /// The object of `luxel bake --plan --json`.
 nlohmann::json to_json(const Plan& plan);
 
-/// What stages beside light take follows from these.
+/// The sizes from which the time of stages beside light follows.
 struct BakeSize {
   double texels = 0, side = 0;  ///< side of the square
   double charts = 0;

@@ -49,7 +49,7 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
   return out;
 }
 
-/// What one core takes per path in most scenes, and to spread a point over a texel [s].
+/// The time of one core per path in most scenes, and to spread a point over a texel [s].
 constexpr double kPathSeconds = 3e-6, kPointSeconds = 5e-6;
 
 std::vector<Stage> usual_reference(const BakeSettings& settings, double texels) {

@@ -1,4 +1,4 @@
-// What it costs that charts of a kept TEXCOORD_1 share texels.
+// The error of texels that charts of a kept TEXCOORD_1 share.
 #pragma once
 
 #include "luxel/pipeline/solver/measured_error.h"

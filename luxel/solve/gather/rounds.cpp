@@ -26,7 +26,7 @@ constexpr double kAimedAt = 0.94;
 /// Over the square of the error that is asked for. What is nearly reached takes few rays.
 constexpr double kNoiseWorthAGuide = 3;
 
-/// What of the time left is not planned for: what takes how long is known from what has come.
+/// The part of the time left that is not planned for: rounds so far tell how long the next takes.
 constexpr double kSpareTime = 0.1;
 /// The light that answers are made of, over all rays before it.
 constexpr double kAnswersOverRays = 0.05;

@@ -7,8 +7,8 @@
 namespace luxel::hemicube {
 namespace {
 
-/// How far into its triangles a vertex at the rim is looked at, in parts of their size: see
-/// make_receivers; and in parts of the way to the nearest opposite edge, at most.
+/// The distance into its triangles at which a vertex at the rim is looked at, in parts of their
+/// size: see make_receivers; and in parts of the way to the nearest opposite edge, at most.
 constexpr float kInset = 0.1f, kMostInset = 0.5f;
 
 /// An edge of a leaf, by its vertices.

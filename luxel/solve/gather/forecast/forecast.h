@@ -11,7 +11,8 @@ struct Forecast {
   double direct_s = 0, supersample_s = 0, trace_s = 0, bounces_s = 0;
   double rays = 0;       ///< shadow rays and those of near paths included
   double hit_bytes = 0;  ///< of stored hits
-  /// What the trial took over what its threads have worked: 1, or more beside other programs.
+  /// Seconds of the trial over those that its threads have worked: 1, or more beside other
+  /// programs.
   double load = 1;
   double seconds() const { return direct_s + supersample_s + trace_s + bounces_s; }
 };
@@ -19,7 +20,7 @@ struct Forecast {
 /// Fewer texels, which lie in some cells of the map, would say little about the others.
 inline constexpr size_t kFewestTried = 4096;
 
-/// How many texels are tried: about one in `part`, but `fewest` at least.
+/// The number of texels that are tried: about one in `part`, but `fewest` at least.
 struct TrialSize {
   int part = 1;
   size_t fewest = kFewestTried;

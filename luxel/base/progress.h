@@ -84,10 +84,10 @@ class Progress {
     double stage_seconds = 0;
     int stage_index = -1;
     double seconds_left = -1;  ///< of all that is expected; < 0: not known
-    /// The share of all work, which never falls; of the stage alone where the end is not known; <
-    /// 0: neither is known. At first it is the time taken over that and the time left. Then it
-    /// grows as it must to be 1 in the end, so that an estimate that is wrong for a moment does not
-    /// move it.
+    /// The share of all work, which never falls; of the stage alone where the end is not known;
+    /// below 0 where neither is known. At first it is the time taken over that and the time left.
+    /// Then it grows as it must to be 1 in the end, so that an estimate that is wrong for a moment
+    /// does not move it.
     double share = -1;
   };
   /// The state now. Thread-safe.

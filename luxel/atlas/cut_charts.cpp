@@ -23,6 +23,12 @@ constexpr size_t kFewestJoined = kFewestParted;
 /// Triangles farther than this from all pairs, in distances of a typical one, stay whole: light
 /// comes around the end of a barrier within three texels.
 constexpr double kNear = 3;
+/// Triangles that a plane crosses along less than this, in distances of a typical pair, stay whole:
+/// half a texel on the other side of a barrier lies beneath it, or is the texel that it stands on.
+constexpr double kShortestCut = 0.5;
+/// A plane parts as many pairs, or more, per triangle that it cuts. A wall across squares of half a
+/// texel does, petals and blades of grass do not, each of which parts a texel or two.
+constexpr size_t kPartedPerTriangle = 2;
 /// More planes than these are not looked at in one piece.
 constexpr size_t kMostCandidates = 256, kMostScored = 32;
 
@@ -115,6 +121,13 @@ struct Node {
   Plane plane{};
 };
 
+/// A plane, in object space, and the triangles that it is to cut.
+struct Cut {
+  Plane plane;
+  double tolerance = 0;  ///< of cut_mesh() [m]
+  std::vector<uint8_t> chosen;
+};
+
 /// Works on one instance, whose mesh is its own.
 class Cutter {
  public:
@@ -149,7 +162,9 @@ class Cutter {
     const CutCandidate best = best_plane(pairs);
     if (best.count < kFewestParted) return;
     const uint32_t piece = nodes_[node].piece;
-    const uint32_t other = apply(piece, best.plane, PairPlaces(pairs));
+    const Cut cut = cut_of(piece, best.plane, PairPlaces(pairs));
+    if (best.count < kPartedPerTriangle * size_t(std::ranges::count(cut.chosen, 1))) return;
+    const uint32_t other = apply(piece, cut);
     const auto below = uint32_t(nodes_.size()), above = below + 1;
     nodes_[node].plane = best.plane, nodes_[node].below = below, nodes_[node].above = above;
     nodes_.push_back(Node{piece});
@@ -162,39 +177,44 @@ class Cutter {
     divide(above, upper);
   }
 
-  /// All above the plane gets a new label, which is returned. Triangles that are not near any
-  /// pair are not cut: they lie where most of them does.
-  uint32_t apply(uint32_t piece, const Plane& world, const PairPlaces& places) {
-    const Plane plane = scene::plane_in_object(world, world_from_object_);
-    const double tolerance = kOnPlane * places.distance();
-    std::vector<uint8_t> chosen(label_.size());
+  /// The triangles of a piece that a plane of the world is to cut. Those that are not near any pair
+  /// are not cut, nor those that it only grazes: they lie where most of them does.
+  Cut cut_of(uint32_t piece, const Plane& world, const PairPlaces& places) const {
+    Cut cut{scene::plane_in_object(world, world_from_object_), kOnPlane * places.distance(),
+            std::vector<uint8_t>(label_.size())};
     for (size_t t = 0; t < label_.size(); ++t)
-      chosen[t] = label_[t] == piece && is_cut_near(t, plane, tolerance, places);
-    for (const uint32_t t : scene::cut_mesh(mesh_, chosen, plane, tolerance))
+      cut.chosen[t] = label_[t] == piece && is_cut_near(t, cut, places);
+    return cut;
+  }
+
+  /// All above the plane gets a new label, which is returned.
+  uint32_t apply(uint32_t piece, const Cut& cut) {
+    for (const uint32_t t : scene::cut_mesh(mesh_, cut.chosen, cut.plane, cut.tolerance))
       label_.push_back(label_[t]), part_of_.push_back(part_of_[t]);
     const uint32_t other = next_++;
     pieces_.push_back({other, chart_of(piece)});
     for (size_t t = 0; t < label_.size(); ++t)
-      if (label_[t] == piece && lies_above(plane, t)) label_[t] = other;
+      if (label_[t] == piece && lies_above(cut.plane, t)) label_[t] = other;
     ++cuts_;
     return other;
   }
 
-  bool is_cut_near(size_t triangle, const Plane& plane, double tolerance,
-                   const PairPlaces& places) const {
+  bool is_cut_near(size_t triangle, const Cut& cut, const PairPlaces& places) const {
     std::vector<DVec3> on_plane;  // world
     for (size_t k = 0; k < 3; ++k) {
       const Vec3 p = mesh_.positions[mesh_.triangles[triangle][k]];
       const Vec3 q = mesh_.positions[mesh_.triangles[triangle][(k + 1) % 3]];
-      const double a = plane.height(to_double(p)), b = plane.height(to_double(q));
-      if (std::abs(a) <= tolerance)
+      const double a = cut.plane.height(to_double(p)), b = cut.plane.height(to_double(q));
+      if (std::abs(a) <= cut.tolerance)
         on_plane.push_back(to_double(transform_point(world_from_object_, p)));
-      if (std::min(a, b) >= -tolerance || std::max(a, b) <= tolerance) continue;
+      if (std::min(a, b) >= -cut.tolerance || std::max(a, b) <= cut.tolerance) continue;
       const DVec3 from = to_double(transform_point(world_from_object_, p));
       const DVec3 to = to_double(transform_point(world_from_object_, q));
       on_plane.push_back(from + (to - from) * (a / (a - b)));
     }
-    return on_plane.size() == 2 && places.is_near(on_plane[0], on_plane[1]);
+    return on_plane.size() == 2 &&
+           length(on_plane[1] - on_plane[0]) >= kShortestCut * places.distance() &&
+           places.is_near(on_plane[0], on_plane[1]);
   }
 
   bool lies_above(const Plane& plane, size_t triangle) const {

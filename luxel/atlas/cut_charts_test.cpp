@@ -25,9 +25,21 @@ struct Floor {
     atlas.first_triangle = {0, 2};
     atlas.chart = {0, 0}, atlas.chart_count = 1;
   }
+  /// Divides it into squares, this many along each side.
+  void divide(uint32_t squares) {
+    scene::Mesh& mesh = scene.meshes[0];
+    mesh.positions.clear(), mesh.normals.clear(), mesh.uv0.clear(), mesh.triangles.clear();
+    const float d = 4.0f / float(squares);
+    for (uint32_t k = 0; k < squares * squares; ++k) {
+      const float x = float(k % squares) * d, z = float(k / squares) * d;
+      scene::add_quad(mesh, {Vec3{x, 0, z + d}, {x + d, 0, z + d}, {x + d, 0, z}, {x, 0, z}}, 0);
+    }
+    mesh.triangle_material.assign(2 * squares * squares, 0);
+    atlas.first_triangle = {0, 2 * squares * squares};
+    atlas.chart.assign(2 * squares * squares, 0);
+  }
   /// A wall through the points (x, z) from a to b: pairs of places a texel apart along it.
-  void add_wall(Vec2 a, Vec2 b) {
-    const float step = 1.0f / 16;
+  void add_wall(Vec2 a, Vec2 b, float step = 1.0f / 16) {
     const Vec2 along = unit(b - a), across{-along.y, along.x};
     const DVec3 normal{across.x, 0, across.y};
     const double offset = double(dot(across, a));
@@ -78,27 +90,46 @@ TEST(CutCharts, AHouseHasAnInsideAndAnOutside) {
   EXPECT_EQ(cut.scene.meshes[0].triangles.size(), 14u);
 }
 
-/// A lawn of 64 x 64 squares and a wall across an eighth of it. Where the wall does not stand the
+/// A lawn of 32 x 32 squares and a wall across half of it. Where the wall does not stand the
 /// squares stay whole; those within three texels of its ends are cut, too.
 TEST(CutCharts, TrianglesFarFromTheWallStayWhole) {
   Floor floor;
-  scene::Mesh& mesh = floor.scene.meshes[0];
-  mesh.positions.clear(), mesh.normals.clear(), mesh.uv0.clear(), mesh.triangles.clear();
-  constexpr uint32_t kSquares = 64;
-  for (uint32_t k = 0; k < kSquares * kSquares; ++k) {
-    const float x = float(k % kSquares) / 16, z = float(k / kSquares) / 16, d = 1.0f / 16;
-    scene::add_quad(mesh, {Vec3{x, 0, z + d}, {x + d, 0, z + d}, {x + d, 0, z}, {x, 0, z}}, 0);
-  }
-  mesh.triangle_material.assign(2 * kSquares * kSquares, 0);
-  floor.atlas.first_triangle = {0, 2 * kSquares * kSquares};
-  floor.atlas.chart.assign(2 * kSquares * kSquares, 0);
-  floor.add_wall({2.03f, 1}, {2.03f, 1.5f});
+  floor.divide(32);
+  floor.add_wall({2.06f, 1}, {2.06f, 3});
   const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
-  const size_t added = cut.scene.meshes[0].triangles.size() - 2 * kSquares * kSquares;
-  // Two triangles in a square, three pieces of each: eight squares, and at most four at each end.
-  EXPECT_GE(added, 8u * 4);
-  EXPECT_LE(added, 17u * 4);
+  const size_t added = cut.scene.meshes[0].triangles.size() - 2 * 32 * 32;
+  // Two triangles in a square, three pieces of each: 16 squares, and at most two at each end.
+  EXPECT_GE(added, 16u * 4);
+  EXPECT_LE(added, 20u * 4);
   EXPECT_EQ(std::set<uint32_t>(cut.group.begin(), cut.group.end()).size(), 2u);
+}
+
+/// Triangles of a quarter of a texel are divided among both sides of the wall as they are.
+TEST(CutCharts, TrianglesFinerThanTexelsStayWhole) {
+  Floor floor;
+  floor.divide(64);
+  floor.add_wall({2.03f, 0}, {2.03f, 4}, 0.25f);
+  const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+  EXPECT_EQ(cut.cuts, 1u);
+  EXPECT_EQ(cut.scene.meshes[0].triangles.size(), 2u * 64 * 64);
+  const uint32_t left = group_at(cut, {0.5f, 2.02f}), right = group_at(cut, {3.5f, 2.02f});
+  EXPECT_NE(left, right);
+  for (float z = 0.02f; z < 4; z += 0.21f) {
+    EXPECT_EQ(group_at(cut, {1.96f, z}), left) << z;
+    EXPECT_EQ(group_at(cut, {2.1f, z}), right) << z;
+  }
+}
+
+/// A blade of grass parts the three pairs of a texel. It cuts a floor of two triangles, but not a
+/// lawn whose triangles are as large as texels.
+TEST(CutCharts, ABladeOfGrassCutsNoFineLawn) {
+  for (const bool fine : {false, true}) {
+    Floor floor;
+    if (fine) floor.divide(64);
+    floor.add_wall({2.01f, 1}, {2.01f, 1.0625f});
+    const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+    EXPECT_EQ(cut.cuts, fine ? 0u : 1u);
+  }
 }
 
 /// A lawn beside a path, each a mesh of its own, and a wall across both: of the lawn's chart alone

@@ -177,4 +177,12 @@ void add_backs(Scene& scene, uint32_t index, std::span<const uint8_t> chosen) {
   }
 }
 
+void make_one_sided(Scene& scene, uint32_t index, std::span<const uint8_t> chosen) {
+  Mesh& mesh = scene.meshes[index];
+  LUXEL_CHECK(chosen.size() == mesh.triangles.size());
+  OneSided one_sided(scene);
+  for (size_t t = 0; t < chosen.size(); ++t)
+    if (chosen[t]) mesh.triangle_material[t] = one_sided.of(mesh.triangle_material[t]);
+}
+
 }  // namespace luxel::scene

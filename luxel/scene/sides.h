@@ -22,6 +22,10 @@ size_t link_sides(Scene& scene);
 /// those without other_side.
 void add_backs(Scene& scene, uint32_t mesh, std::span<const uint8_t> chosen);
 
+/// Gives the chosen triangles of a mesh one-sided materials: their backs count as the inside of a
+/// solid from then on. `chosen`: one flag per triangle.
+void make_one_sided(Scene& scene, uint32_t mesh, std::span<const uint8_t> chosen);
+
 /// Whether any material scatters light through (KHR_materials_diffuse_transmission).
 bool scatters_light(const Scene& scene);
 

@@ -31,8 +31,9 @@ constexpr size_t kMostPlaces = 4;
 /// The parts of a mesh that hang together by their corners.
 struct Shells {
   std::vector<uint32_t> of_triangle;
-  std::vector<Box3> bounds;                       ///< object space
-  std::vector<uint8_t> closed;                    ///< every edge has triangles on both sides
+  std::vector<Box3> bounds;     ///< object space
+  std::vector<uint8_t> closed;  ///< every edge has triangles on both sides
+  std::vector<double> volume;   ///< of a closed one: below 0 if fronts face inwards
   std::vector<std::vector<uint32_t>> candidates;  ///< triangles that may need a back
 };
 
@@ -68,6 +69,14 @@ void find_borders(const scene::Mesh& mesh, std::span<const uint32_t> place, Shel
   }
 }
 
+/// The signed volume between a triangle and the origin; the sum over a closed shell is its volume.
+double volume_below(const scene::Mesh& mesh, uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return dot(to_double(mesh.positions[a]),
+             cross(to_double(mesh.positions[b]), to_double(mesh.positions[c]))) /
+         6;
+}
+
 Shells shells_of(const scene::Scene& scene, const scene::Mesh& mesh) {
   const std::vector<uint32_t> place = scene::position_numbers(mesh.positions);
   std::vector<uint32_t> parent(mesh.positions.size());
@@ -81,10 +90,12 @@ Shells shells_of(const scene::Scene& scene, const scene::Mesh& mesh) {
     if (shell == scene::kNone) {
       shell = uint32_t(out.bounds.size());
       out.bounds.emplace_back();
+      out.volume.push_back(0);
       out.candidates.emplace_back();
     }
     out.of_triangle.push_back(shell);
     for (const uint32_t v : mesh.triangles[t]) out.bounds[shell].extend(mesh.positions[v]);
+    out.volume[shell] += volume_below(mesh, t);
     if (may_need_back(scene, mesh, t)) out.candidates[shell].push_back(t);
   }
   out.closed.assign(out.bounds.size(), 1);
@@ -282,17 +293,22 @@ std::vector<std::string> what_uv1_shows(size_t count, const std::optional<WrongS
       rough_percent(wrong->all))};
 }
 
-}  // namespace
+/// Flags of triangles, one vector per mesh, empty for meshes without double-sided ones.
+struct BackSides {
+  std::vector<std::vector<uint8_t>> open;
+  std::vector<std::vector<uint8_t>> solid;  ///< of opaque closed shells that nothing is inside of
+};
 
-Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
-                                                     Progress& progress) {
-  std::vector<std::vector<uint8_t>> chosen(scene.meshes.size());
+/// Errors: cancelled, no memory for the ray tracer.
+Result<BackSides> look_behind(const scene::Scene& scene, Progress& progress) {
+  BackSides out;
+  out.open.resize(scene.meshes.size()), out.solid.resize(scene.meshes.size());
   const bool any = std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const auto& mesh) {
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
       if (may_need_back(scene, mesh, t)) return true;
     return false;
   });
-  if (!any) return chosen;
+  if (!any) return out;
   std::vector<Shells> shells(scene.meshes.size());
   parallel_for(shells.size(), 1, [&](size_t begin, size_t end) {
     for (size_t m = begin; m < end; ++m) shells[m] = shells_of(scene, scene.meshes[m]);
@@ -309,12 +325,24 @@ Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
   });
   LUXEL_TRY_STATUS(stopped(progress));
   for (size_t k = 0; k < placed.size(); ++k) {
-    const uint32_t m = scene.instances[placed[k].instance].mesh;
-    chosen[m].resize(scene.meshes[m].triangles.size());
-    for (const uint32_t t : shells[m].candidates[placed[k].shell])
-      chosen[m][t] |= open[k] || scatters(scene, scene.meshes[m], t);
+    const uint32_t m = scene.instances[placed[k].instance].mesh, shell = placed[k].shell;
+    const scene::Mesh& mesh = scene.meshes[m];
+    out.open[m].resize(mesh.triangles.size()), out.solid[m].resize(mesh.triangles.size());
+    for (const uint32_t t : shells[m].candidates[shell]) {
+      out.open[m][t] |= open[k] || scatters(scene, mesh, t);
+      out.solid[m][t] = !out.open[m][t] && shells[m].closed[shell] && shells[m].volume[shell] > 0 &&
+                        !scene::lets_light_through(scene.materials[mesh.triangle_material[t]]);
+    }
   }
-  return chosen;
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
+                                                     Progress& progress) {
+  LUXEL_TRY(BackSides backs, look_behind(scene, progress));
+  return std::move(backs.open);
 }
 
 Result<atlas::UvMode> settle_uv(const scene::Scene& scene, const SidesParams& params,
@@ -344,7 +372,10 @@ Result<atlas::UvMode> settle_uv(const scene::Scene& scene, const SidesParams& pa
 
 Result<Sides> split_sides(scene::Scene& scene, const SidesParams& params, Progress& progress) {
   Sides out{params.uv, {}, {}};
-  LUXEL_TRY(const auto open, open_backs(scene, progress));
+  LUXEL_TRY(const BackSides backs, look_behind(scene, progress));
+  for (uint32_t m = 0; m < backs.solid.size(); ++m)
+    if (!backs.solid[m].empty()) scene::make_one_sided(scene, m, backs.solid[m]);
+  const std::vector<std::vector<uint8_t>>& open = backs.open;
   size_t count = 0;
   for (const auto& flags : open) count += size_t(std::count(flags.begin(), flags.end(), 1));
   if (count == 0) return out;

@@ -45,10 +45,12 @@ struct Sides {
   std::vector<std::string> warnings;
 };
 
-/// Gives them a side of their own behind (luxel/scene/sides.h), unless the file's own lightmap
+/// Gives open backs a side of their own (luxel/scene/sides.h), unless the file's own lightmap
 /// coordinates are kept: those have one place for both. UvMode::automatic keeps them where no more
 /// than kMostShownWrong of them shows wrong light. A warning says what they hold wrongly, or that
-/// they are not kept. Errors: cancelled, no memory for the ray tracer.
+/// they are not kept. Opaque closed solids that face outwards, and into which no light comes,
+/// become one-sided in any case: what stands in one, as crowns of trees do in each other, is hidden
+/// where most of what it sees is a solid's back. Errors: cancelled, no memory for the ray tracer.
 Result<Sides> split_sides(scene::Scene& scene, const SidesParams& params, Progress& progress);
 
 /// Materials that split_sides has added to a scene, at the end: of which each is a copy.

@@ -241,6 +241,38 @@ TEST(TwoSides, SidesAreSplitOnce) {
   }
 }
 
+/// Whether the triangles of a mesh are one-sided once sides are split.
+bool is_one_sided(scene::Scene s) {
+  const size_t triangles = s.meshes[0].triangles.size();
+  Progress progress;
+  EXPECT_TRUE(split_sides(s, {.uv = atlas::UvMode::unwrap}, progress));
+  const scene::Mesh& mesh = s.meshes[0];
+  return mesh.triangles.size() == triangles &&
+         std::ranges::none_of(mesh.triangle_material,
+                              [&](uint32_t m) { return s.materials[m].double_sided; });
+}
+
+TEST(TwoSides, SolidsAreOneSided) {
+  scene::Scene s = empty();
+  scene::place(s, box({}, {1, 1, 1}, kSheet));
+  EXPECT_TRUE(is_one_sided(s));
+  // Mirrored, its front is outside all the same.
+  s.instances[0].world_from_object = from_columns({-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {});
+  EXPECT_TRUE(is_one_sided(s));
+  scene::Scene glass = s;
+  glass.materials[kSheet].transmission = 1;
+  EXPECT_FALSE(is_one_sided(glass));
+  // A room in the dark is seen from inside, and a bowl upside down on a floor is no solid.
+  scene::Scene room = s;
+  room.background = {};
+  turn_inside_out(room.meshes[0]);
+  EXPECT_FALSE(is_one_sided(room));
+  scene::Scene bowl = empty();
+  scene::place(bowl, box({}, {1, 1, 1}, kSheet, -1));
+  scene::add_rectangle(bowl, {-5, 5, -5, 5}, 0, true, kSolid);
+  EXPECT_FALSE(is_one_sided(bowl));
+}
+
 TEST(TwoSides, NothingIsAskedOfASceneWithoutSheets) {
   scene::Scene s = empty();
   scene::place(s, box({}, {1, 1, 1}, kSolid));

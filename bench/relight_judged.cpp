@@ -13,6 +13,7 @@
 #include "luxel/scene/surface_points.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/solve/matrix/relighter.h"
+#include "luxel/transport/elements_at.h"
 #include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
@@ -80,12 +81,8 @@ Result<std::unique_ptr<Place>> make_place(scene::Scene scene, const JudgeSetting
   scene.background = {}, scene.environment = {}, scene.lights = {};
   out->scene = std::move(scene);
   LUXEL_TRY(out->tracer, trace::RayTracer::build(out->scene));
-  for (const scene::SurfacePoint& p :
-       scene::points_uniform_in_area(out->scene, settings.points, kSeed)) {
-    const transport::SmoothPoint at = transport::smooth_point(out->scene, p);
-    out->points.position.push_back(at.start), out->points.normal.push_back(at.normal);
-    out->points.geometric_normal.push_back(at.geometric_normal);
-  }
+  out->points = transport::elements_at(
+      out->scene, scene::points_uniform_in_area(out->scene, settings.points, kSeed));
   return out;
 }
 

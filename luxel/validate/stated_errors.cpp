@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/transport/elements_at.h"
+
 namespace luxel::validate {
 namespace {
 
@@ -21,12 +23,9 @@ double percentile(std::vector<double> values, double share) {
 Result<JudgedParts> judge_parts(const Prepared& p, int samples_each, uint64_t seed,
                                 Progress& progress) {
   JudgedParts out{atlas::shared_parts(p.atlas, p.map), {}};
-  transport::Elements places;
-  for (const atlas::SharedPart& part : out.parts) {
-    const transport::SmoothPoint at = transport::smooth_point(p.scene, part.middle);
-    places.position.push_back(at.start), places.normal.push_back(at.normal);
-    places.geometric_normal.push_back(at.geometric_normal);
-  }
+  std::vector<scene::SurfacePoint> middles;
+  for (const atlas::SharedPart& part : out.parts) middles.push_back(part.middle);
+  const transport::Elements places = transport::elements_at(p.scene, middles);
   LUXEL_TRY(out.judged,
             judge(p.scene, *p.tracer, reference::receivers(places), samples_each, seed, progress));
   return out;

@@ -9,6 +9,7 @@
 #include "luxel/scene/validate.h"
 #include "luxel/solve/matrix/relighter.h"
 #include "luxel/solve/matrix/trials.h"
+#include "luxel/transport/elements_at.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -126,13 +127,7 @@ void keep_own(size_t own, matrix::Target& target) {
 }  // namespace
 
 transport::Elements places_to_check(const scene::Scene& scene, uint64_t seed) {
-  transport::Elements out;
-  for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPlaces, seed)) {
-    const transport::SmoothPoint at = transport::smooth_point(scene, p);
-    out.position.push_back(at.start), out.normal.push_back(at.normal);
-    out.geometric_normal.push_back(at.geometric_normal);
-  }
-  return out;
+  return transport::elements_at(scene, scene::points_uniform_in_area(scene, kPlaces, seed));
 }
 
 CheckedTarget with_places(matrix::Target target, const transport::Elements& places) {

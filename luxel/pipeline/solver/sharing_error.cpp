@@ -8,6 +8,7 @@
 #include "luxel/base/random.h"
 #include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/reference/path_tracer.h"
+#include "luxel/transport/elements_at.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -40,12 +41,9 @@ Result<double> sharing_error(const light::TexelScene& in, const TexelLight& ligh
   const double mean = mean_light(light);
   if (!(area > 0 && mean > 0)) return 0.0;
   const std::vector<atlas::SharedPart> chosen = choose_parts(all, area);
-  transport::Elements places;
-  for (const atlas::SharedPart& part : chosen) {
-    const transport::SmoothPoint at = transport::smooth_point(in.scene, part.middle);
-    places.position.push_back(at.start), places.normal.push_back(at.normal);
-    places.geometric_normal.push_back(at.geometric_normal);
-  }
+  std::vector<scene::SurfacePoint> middles;
+  for (const atlas::SharedPart& part : chosen) middles.push_back(part.middle);
+  const transport::Elements places = transport::elements_at(in.scene, middles);
   progress.begin("check", 2);
   std::array<reference::TexelPaths, 2> answers;
   for (size_t k = 0; k < answers.size(); ++k) {

@@ -159,6 +159,7 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
   s.element_size_m =
       float(std::sqrt(2 * area_m2(scene) / double(std::max<size_t>(first.mesh.triangle_count, 1))));
   s.field.receivers = make_receivers(scene, first.mesh, params.elements);
+  step_off_walls(scene, tracer, first.mesh, s.field.receivers);
   s.field.mesh = std::move(first.mesh);
   if (observer.on_mesh) observer.on_mesh(s.field);
   if (params.max_error > 0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "luxel/base/parallel.h"
+#include "luxel/transport/elements_at.h"
 
 namespace luxel::hemicube {
 namespace {
@@ -10,6 +11,16 @@ namespace {
 /// The distance into its triangles at which a vertex at the rim is looked at, in parts of their
 /// size: see make_receivers; and in parts of the way to the nearest opposite edge, at most.
 constexpr float kInset = 0.1f, kMostInset = 0.5f;
+/// Walls count as near within this part of the inset, before them and behind their faces. Beside a
+/// corner's bisector both rims are nearer than the inset, by 0.7 in a right angle.
+constexpr float kAtFoot = 0.5f;
+/// A step off a wall is free where nothing else stands within this part of it.
+constexpr float kFree = 0.98f;
+/// Ways to look for walls: one is within 23 degrees of a wall's normal.
+constexpr uint32_t kWays = 8;
+/// A wall's face is at more than 60 degrees to the surface, as creases are (weld.cpp), and no
+/// ceiling that lies on it.
+constexpr float kLeastWall = -0.9f, kMostWall = 0.5f;
 
 /// An edge of a leaf, by its vertices.
 struct LeafEdge {
@@ -76,8 +87,9 @@ struct Fan {
   }
 };
 
+/// Rims are known by the edges.
 std::vector<Fan> fans_of(const Mesh& mesh, std::span<const uint32_t> leaves,
-                         std::span<const LeafEdge> edges) {
+                         std::span<const LeafEdge> edges = {}) {
   std::vector<Fan> fans(mesh.vertices.size());
   for (const uint32_t leaf : leaves) {
     const Node& node = mesh.nodes[leaf];
@@ -100,31 +112,16 @@ std::vector<Fan> fans_of(const Mesh& mesh, std::span<const uint32_t> leaves,
   return fans;
 }
 
-void place_vertices(const scene::Scene& scene, const Mesh& mesh, std::span<const Fan> fans,
-                    transport::Elements& e) {
-  parallel_for(mesh.vertices.size(), 1024, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const transport::SmoothPoint at = transport::smooth_point(scene, mesh.vertices[i]);
-      e.position[i] = at.start, e.normal[i] = at.normal;
-      e.geometric_normal[i] = at.geometric_normal;
-      const Fan& fan = fans[i];
-      if (!fan.at_rim || !(fan.inset_m() > 0)) continue;
-      const Vec3 along = fan.inwards - at.geometric_normal * dot(fan.inwards, at.geometric_normal);
-      e.position[i] += normalize(along) * fan.inset_m();
-    }
-  });
-}
-
-void place_triangles(const scene::Scene& scene, const Mesh& mesh, std::span<const uint32_t> leaves,
-                     transport::Elements& e) {
-  parallel_for(leaves.size(), 1024, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const scene::SurfacePoint centroid = scene_point(mesh.nodes[leaves[i]], {1 / 3.0f, 1 / 3.0f});
-      const transport::SmoothPoint at = transport::smooth_point(scene, centroid);
-      e.position[i] = at.start, e.normal[i] = at.normal;
-      e.geometric_normal[i] = at.geometric_normal;
-    }
-  });
+transport::Elements places_of_vertices(const scene::Scene& scene, const Mesh& mesh,
+                                       std::span<const Fan> fans) {
+  transport::Elements e = transport::elements_at(scene, mesh.vertices);
+  for (size_t i = 0; i < fans.size(); ++i) {
+    const Fan& fan = fans[i];
+    if (!fan.at_rim || !(fan.inset_m() > 0)) continue;
+    const Vec3 n = e.geometric_normal[i];
+    e.position[i] += normalize(fan.inwards - n * dot(fan.inwards, n)) * fan.inset_m();
+  }
+  return e;
 }
 
 /// Over the triangle: at its centroid where the material has one colour, else the mean over ten
@@ -181,7 +178,65 @@ void average_reflectances(const scene::Scene& scene, const Mesh& mesh, Receivers
                      Rgb{scene::kMaxReflectance, scene::kMaxReflectance, scene::kMaxReflectance});
 }
 
+/// The face of a wall by which a vertex stands.
+struct NearWall {
+  Vec3 away;                    ///< from it, along the vertex's own surface
+  float distance_m = INFINITY;  ///< of the vertex; < 0: behind it
+};
+
+/// The nearest wall on the surface at `from`, by rays across a circle about it: those that start in
+/// front of the wall meet its front, wherever `from` itself lies.
+NearWall nearest_wall(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                      Vec3 normal, float radius_m) {
+  std::array<trace::Ray, kWays> rays;
+  std::array<trace::Hit, kWays> hits;
+  const Frame frame = frame_around(normal);
+  for (uint32_t k = 0; k < kWays; ++k) {
+    const float angle = 2 * kPi * (float(k) + 0.5f) / float(kWays);
+    const Vec3 d = frame.to_world({std::cos(angle), std::sin(angle), 0});
+    rays[k] = {from + d * radius_m, 0, -d, 2 * radius_m};
+  }
+  tracer.closest_hits(rays, hits);
+  NearWall out;
+  for (uint32_t k = 0; k < kWays; ++k) {
+    if (!hits[k].found()) continue;
+    const scene::SurfacePoint at = hits[k].point();
+    if (hits[k].back_face && !scene::reflects_from_behind(scene::material_at(scene, at))) continue;
+    const Vec3 front = scene::front_normal(scene, at.instance, at.triangle);
+    const Vec3 face = hits[k].back_face ? -front : front;
+    const float lean = dot(face, normal);
+    if (lean < kLeastWall || lean > kMostWall) continue;
+    const Vec3 away = normalize(face - normal * lean);
+    const float distance_m = dot(rays[k].direction, away) * (radius_m - hits[k].t);
+    if (std::abs(distance_m) < std::abs(out.distance_m)) out = {away, distance_m};
+  }
+  return out;
+}
+
+/// `from`, or as far off the walls there as a vertex at a rim. A corner has two of them. In a
+/// narrow gap the way off one wall leads through another, and `from` stays.
+Vec3 off_walls(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
+               float radius_m) {
+  Vec3 to = from;
+  for (int walls = 0; walls < 2; ++walls) {
+    const NearWall wall = nearest_wall(scene, tracer, to, normal, radius_m);
+    if (!(std::abs(wall.distance_m) < kAtFoot * radius_m)) break;
+    to += wall.away * (radius_m - wall.distance_m);
+    if (tracer.closest_hit({to, 0, -wall.away, kFree * radius_m}).found()) return from;
+  }
+  return to;
+}
+
 }  // namespace
+
+transport::Elements places_of_triangles(const scene::Scene& scene, const Mesh& mesh,
+                                        std::span<const uint32_t> leaves) {
+  std::vector<scene::SurfacePoint> centroids;
+  centroids.reserve(leaves.size());
+  for (const uint32_t leaf : leaves)
+    centroids.push_back(scene_point(mesh.nodes[leaf], {1 / 3.0f, 1 / 3.0f}));
+  return transport::elements_at(scene, centroids);
+}
 
 Receivers make_receivers(const scene::Scene& scene, const Mesh& mesh, ElementKind kind) {
   Receivers r;
@@ -190,17 +245,26 @@ Receivers make_receivers(const scene::Scene& scene, const Mesh& mesh, ElementKin
   r.leaf_of_node.assign(mesh.nodes.size(), kNone);
   for (uint32_t i = 0; i < r.leaves.size(); ++i) r.leaf_of_node[r.leaves[i]] = i;
   const size_t count = kind == ElementKind::vertex ? mesh.vertices.size() : r.leaves.size();
-  transport::Elements& e = r.elements;
-  e.position.resize(count), e.normal.resize(count), e.geometric_normal.resize(count);
-  e.reflectance.resize(count), r.area_m2.resize(count);
   const std::vector<LeafEdge> edges = sorted_edges(mesh, r.leaves);
-  if (kind == ElementKind::vertex)
-    place_vertices(scene, mesh, fans_of(mesh, r.leaves, edges), e);
-  else
-    place_triangles(scene, mesh, r.leaves, e);
+  r.elements = kind == ElementKind::vertex
+                   ? places_of_vertices(scene, mesh, fans_of(mesh, r.leaves, edges))
+                   : places_of_triangles(scene, mesh, r.leaves);
+  r.elements.reflectance.resize(count), r.area_m2.resize(count);
   average_reflectances(scene, mesh, r);
   r.neighbours = neighbours_of(edges, kind, count);
   return r;
+}
+
+void step_off_walls(const scene::Scene& scene, const trace::RayTracer& tracer, const Mesh& mesh,
+                    Receivers& receivers) {
+  if (receivers.kind != ElementKind::vertex) return;
+  const std::vector<Fan> fans = fans_of(mesh, receivers.leaves);
+  transport::Elements& e = receivers.elements;
+  parallel_for(fans.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (const float inset_m = fans[i].inset_m(); inset_m > 0)
+        e.position[i] = off_walls(scene, tracer, e.position[i], e.geometric_normal[i], inset_m);
+  });
 }
 
 }  // namespace luxel::hemicube

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "luxel/solve/hemicube/mesh.h"
+#include "luxel/trace/ray_tracer.h"
 #include "luxel/transport/elements.h"
 
 namespace luxel::hemicube {
@@ -43,5 +44,16 @@ struct Receivers {
 /// Triangles are looked at from their centroids. A reflectance that varies is averaged over the
 /// element.
 Receivers make_receivers(const scene::Scene& scene, const Mesh& mesh, ElementKind kind);
+
+/// The centroids of some nodes, without reflectances.
+transport::Elements places_of_triangles(const scene::Scene& scene, const Mesh& mesh,
+                                        std::span<const uint32_t> leaves);
+
+/// Where a wall stands on a surface that goes on beneath it, the visible part of the surface ends
+/// at the wall's foot, as at a rim. Vertices at the foot are looked at from as far off it as
+/// vertices at a rim, for the same reason, and not from the wall's own face, where chance decides
+/// whether they lie inside of it. Triangles stay.
+void step_off_walls(const scene::Scene& scene, const trace::RayTracer& tracer, const Mesh& mesh,
+                    Receivers& receivers);
 
 }  // namespace luxel::hemicube

@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/light/direct_light.h"
 #include "luxel/solve/hemicube/bisect.h"
+#include "luxel/transport/back_faces.h"
 #include "luxel/transport/covers.h"
 
 namespace luxel::hemicube {
@@ -52,11 +53,12 @@ Slope slope_from_edge(const Field& field, uint32_t leaf, size_t k) {
 }
 
 /// (g_1 + g_2) h / 4 over each edge, h the height of the triangle: interpolation_errors derives it.
-std::vector<float> errors_per_vertex(const Field& field) {
+std::vector<float> errors_per_vertex(const Field& field, std::span<const uint8_t> unseen) {
   const Receivers& r = field.receivers;
   std::vector<float> error(r.leaves.size());
   std::map<std::pair<uint32_t, uint32_t>, Slope> open;  // edges with one triangle so far
   for (uint32_t leaf = 0; leaf < r.leaves.size(); ++leaf) {
+    if (!unseen.empty() && unseen[leaf]) continue;
     const Node& node = field.mesh.nodes[r.leaves[leaf]];
     for (size_t k = 0; k < 3; ++k) {
       const Slope here = slope_from_edge(field, leaf, k);
@@ -73,12 +75,14 @@ std::vector<float> errors_per_vertex(const Field& field) {
   return error;
 }
 
-std::vector<float> errors_per_triangle(const Field& field) {
+std::vector<float> errors_per_triangle(const Field& field, std::span<const uint8_t> unseen) {
+  const auto counts = [&](size_t i) { return unseen.empty() || !unseen[i]; };
   std::vector<float> error(field.receivers.size());
-  for (size_t i = 0; i < error.size(); ++i)
+  for (uint32_t i = 0; i < error.size(); ++i)
     for (const uint32_t j : field.receivers.neighbours.of(i))
-      error[i] = std::max(
-          error[i], 0.5f * std::abs(luminance_of(field, uint32_t(i)) - luminance_of(field, j)));
+      if (counts(i) && counts(j))
+        error[i] =
+            std::max(error[i], 0.5f * std::abs(luminance_of(field, i) - luminance_of(field, j)));
   return error;
 }
 
@@ -104,11 +108,29 @@ double mean_luminance(const Field& field) {
   return area > 0 ? sum / area : 0;
 }
 
+/// Per leaf, 1 where it lies inside a solid: it has enclosed elements, and its middle is enclosed,
+/// too. Where a wall stands across a triangle, the part that is seen may be the larger one.
+std::vector<uint8_t> unseen_leaves(const SendingScene& around, const Solution& s) {
+  const Receivers& r = s.field.receivers;
+  if (r.kind == ElementKind::triangle) return s.enclosed;
+  std::vector<uint8_t> out(r.leaves.size());
+  std::vector<uint32_t> which, nodes;
+  for (uint32_t leaf = 0; leaf < out.size(); ++leaf) {
+    const auto& v = s.field.mesh.nodes[r.leaves[leaf]].vertex;
+    if (s.enclosed[v[0]] || s.enclosed[v[1]] || s.enclosed[v[2]])
+      which.push_back(leaf), nodes.push_back(r.leaves[leaf]);
+  }
+  const std::vector<uint8_t> enclosed = transport::find_enclosed(
+      around.scene, around.tracer, places_of_triangles(around.scene, s.field.mesh, nodes));
+  for (size_t k = 0; k < which.size(); ++k) out[which[k]] = enclosed[k];
+  return out;
+}
+
 /// Triangles to cut, the worst first: those that err by more than `max_error` of their light or, in
 /// the dark, of a tenth of the scene's mean, ordered by what they add to the whole error.
-std::vector<uint32_t> worst_first(const Field& field, float max_error, double shortest_m,
-                                  const Bisector& bisector) {
-  const std::vector<float> errors = interpolation_errors(field);
+std::vector<uint32_t> worst_first(const Field& field, std::span<const uint8_t> unseen,
+                                  float max_error, double shortest_m, const Bisector& bisector) {
+  const std::vector<float> errors = interpolation_errors(field, unseen);
   const float dark = kDark * float(mean_luminance(field));
   std::vector<std::pair<float, uint32_t>> order;
   for (size_t i = 0; i < errors.size(); ++i) {
@@ -155,9 +177,9 @@ double mean_longest_edge_m(const Mesh& mesh, std::span<const uint32_t> nodes, co
 
 }  // namespace
 
-std::vector<float> interpolation_errors(const Field& field) {
-  return field.receivers.kind == ElementKind::vertex ? errors_per_vertex(field)
-                                                     : errors_per_triangle(field);
+std::vector<float> interpolation_errors(const Field& field, std::span<const uint8_t> unseen) {
+  return field.receivers.kind == ElementKind::vertex ? errors_per_vertex(field, unseen)
+                                                     : errors_per_triangle(field, unseen);
 }
 
 double relative_interpolation_error(const Field& field) {
@@ -211,10 +233,10 @@ namespace {
 
 /// Cuts the worst triangles until there are `goal` elements, or nearly so. False when there is
 /// nothing to cut.
-bool cut_worst(Field& field, const HemicubeParams& params, size_t goal, double shortest_m,
-               Bisector& bisector) {
+bool cut_worst(Field& field, std::span<const uint8_t> unseen, const HemicubeParams& params,
+               size_t goal, double shortest_m, Bisector& bisector) {
   const size_t before = field.mesh.nodes.size();
-  for (const uint32_t node : worst_first(field, params.max_error, shortest_m, bisector)) {
+  for (const uint32_t node : worst_first(field, unseen, params.max_error, shortest_m, bisector)) {
     const size_t elements = params.elements == ElementKind::vertex ? field.mesh.vertices.size()
                                                                    : field.mesh.triangle_count;
     if (elements >= goal) break;
@@ -270,10 +292,12 @@ Status refine(const SendingScene& around, const HemicubeParams& params, size_t m
     if (now >= max_elements) break;
     const size_t more = std::max<size_t>(64, size_t(kGrowth * double(now)));
     const size_t goal = std::min(max_elements, now + more);
-    if (!cut_worst(s.field, params, goal, shortest_m, bisector)) break;
+    const std::vector<uint8_t> unseen = unseen_leaves(around, s);
+    if (!cut_worst(s.field, unseen, params, goal, shortest_m, bisector)) break;
     expect_looks(now, goal, max_elements, s, progress);
     const Receivers old = std::move(s.field.receivers);
     s.field.receivers = make_receivers(around.scene, s.field.mesh, params.elements);
+    step_off_walls(around.scene, around.tracer, s.field.mesh, s.field.receivers);
     const std::vector<uint32_t> unknown = carry_over(old, s.field.receivers, s);
     LUXEL_TRY_STATUS(light_new_elements(around, params, unknown, sent, s, progress));
   }

@@ -10,8 +10,9 @@ namespace luxel::hemicube {
 /// mesh, as luminance [W/m^2]: the kink of the light across its edges, which a linear function has
 /// not. Along an edge between triangles of heights h_1, h_2 with slopes g_1, g_2 away from it, a
 /// function of constant curvature k has g_1 + g_2 = k (h_1 + h_2) / 2 and errs by k h^2 / 8, and
-/// one that jumps by J errs by J / 2, so (g_1 + g_2) h / 4 stands between both.
-std::vector<float> interpolation_errors(const Field& field);
+/// one that jumps by J errs by J / 2, so (g_1 + g_2) h / 4 stands between both. Triangles that are
+/// `unseen`, 1, do not err, and are no neighbours to others: their light is made up. Empty: none.
+std::vector<float> interpolation_errors(const Field& field, std::span<const uint8_t> unseen = {});
 
 /// Root mean square of these over the area, over the mean irradiance.
 double relative_interpolation_error(const Field& field);

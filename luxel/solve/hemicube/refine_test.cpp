@@ -146,6 +146,39 @@ TEST(Refine, ConstantLightIsNotCut) {
   }
 }
 
+// Light inside of a solid is made up from that around it: its kinks are no reason to cut.
+TEST(Refine, SolidsAreNotCutInside) {
+  scene::Scene scene;
+  scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(scene, {-2, 2, -2, 2}, 0, true, 0);
+  scene::Mesh block;
+  scene::add_box(block, {-1.03f, 0, -1.03f}, {1.03f, 0.5f, 1.03f}, 0);
+  scene::place(scene, std::move(block));
+  scene::PunctualLight lamp;
+  lamp.position = {1.5f, 1, 0.3f};
+  scene.lights.push_back(lamp);
+  HemicubeParams params;
+  params.resolution = 8, params.max_elements = 2000;
+  const Solution s = solved(scene, params);
+  EXPECT_TRUE(was_cut_on(s));
+  int inside = 0;
+  for (const uint32_t leaf : s.field.receivers.leaves) {
+    const Node& n = s.field.mesh.nodes[leaf];
+    const std::array<Vec3, 3> at{s.field.mesh.points[n.point[0]], s.field.mesh.points[n.point[1]],
+                                 s.field.mesh.points[n.point[2]]};
+    const Vec3 middle = (at[0] + at[1] + at[2]) / 3;
+    // Triangles at the border may be cut together with those outside, and their neighbours with
+    // them.
+    const float deep = 1.03f - std::max(std::abs(middle.x), std::abs(middle.z));
+    if (n.instance != 0 || deep < 1.5f * s.element_size_m) continue;
+    ++inside;
+    EXPECT_GT(length(cross(at[1] - at[0], at[2] - at[0])),
+              0.6f * s.element_size_m * s.element_size_m)
+        << middle.x << ' ' << middle.z;
+  }
+  EXPECT_GT(inside, 20);
+}
+
 /// A field over the unit square with light by a function of the place.
 template <class Light>
 Field field_of(ElementKind kind, float size, const Light& light) {
@@ -188,6 +221,46 @@ TEST(InterpolationErrors, AreThoseOfKnownFunctions) {
     EXPECT_GT(error, 6 * h / 3 / 2 * 0.99f);
     EXPECT_LT(error, 6 * h * 2 / 3 / 2 * 1.01f);
   }
+}
+
+// Light falls to nothing in one step where a wall stands: no error beside it, where what lies
+// beyond is not seen.
+TEST(InterpolationErrors, AreNoneBesideWhatIsUnseen) {
+  const auto light = [](Vec3 p) { return p.x < 0.51f ? 1 + 2 * p.x : 0; };
+  const Field field = field_of(ElementKind::vertex, 0.1f, light);
+  std::vector<uint8_t> unseen;
+  for (const uint32_t leaf : field.receivers.leaves) {
+    const auto& point = field.mesh.nodes[leaf].point;
+    unseen.push_back(std::max({field.mesh.points[point[0]].x, field.mesh.points[point[1]].x,
+                               field.mesh.points[point[2]].x}) > 0.51f);
+  }
+  EXPECT_GT(std::ranges::max(interpolation_errors(field)), 0.4f);
+  EXPECT_LT(std::ranges::max(interpolation_errors(field, unseen)), 1e-5f);
+}
+
+// A wall stands on a floor in triangles with legs of 1/4, its face along a row of vertices. They
+// are looked at from 1/40 before it, as at a rim; all others from where they are.
+TEST(Receivers, VerticesAtTheFootOfAWallAreLookedAtFromBeforeIt) {
+  scene::Scene room = scene_of(testing::unit_square());
+  scene::Mesh wall;
+  scene::add_box(wall, {0.5f, 0, -0.1f}, {0.6f, 0.5f, 1.1f}, 0);
+  scene::place(room, std::move(wall));
+  const auto tracer = trace::RayTracer::build(room);
+  ASSERT_TRUE(tracer);
+  const Mesh mesh = testing::mesh_of(room, 0.25f);
+  Receivers receivers = make_receivers(room, mesh, ElementKind::vertex);
+  const transport::Elements before = receivers.elements;
+  step_off_walls(room, *tracer, mesh, receivers);
+  int at_foot = 0;
+  for (size_t i = 0; i < receivers.size(); ++i) {
+    const Vec3 from = before.position[i], to = receivers.elements.position[i];
+    const bool is_foot = mesh.vertices[i].instance == 0 && mesh.points[mesh.point_of[i]].x == 0.5f;
+    at_foot += is_foot;
+    EXPECT_NEAR(to.x, is_foot ? 0.475f : from.x, 1e-4f) << from.z;
+    EXPECT_NEAR(to.y, from.y, 1e-6f);
+    EXPECT_NEAR(to.z, from.z, 1e-6f);
+  }
+  EXPECT_EQ(at_foot, 5);
 }
 
 // A square in four triangles about its middle, of which one is cut in two. Their size is the root

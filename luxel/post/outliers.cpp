@@ -70,8 +70,14 @@ float lowered(const Neighbourhood& n, const Outliers& part, uint32_t i) {
   return is_firefly ? usual : INFINITY;
 }
 
-bool is_noisy(const Neighbourhood& n, std::span<const float> variance, uint32_t i) {
-  return variance[i] > 0 && n.place[i].spacing > 0;
+/// Halves of rays that all bring the same light differ by rounding alone, by less than this part of
+/// it: there is no noise.
+constexpr float kRounding = 1e-5f;
+
+bool is_noisy(const Neighbourhood& n, std::span<const float> variance, std::span<const Rgb> values,
+              uint32_t i) {
+  const float rounding = kRounding * luminance(values[i]);
+  return n.place[i].spacing > 0 && variance[i] > rounding * rounding;
 }
 
 }  // namespace
@@ -81,7 +87,7 @@ Result<std::vector<Firefly>> find_fireflies(const Neighbourhood& n, const Outlie
   std::vector<float> lowered_to(part.values.size(), INFINITY);
   const auto look = [&](size_t begin, size_t end) {
     for (uint32_t i = uint32_t(begin); i < end; ++i)
-      if (is_noisy(n, part.variance, i)) lowered_to[i] = lowered(n, part, i);
+      if (is_noisy(n, part.variance, part.values, i)) lowered_to[i] = lowered(n, part, i);
   };
   LUXEL_TRY_STATUS(
       share_ranges(team, part.values.size(), kBlockTexels, progress, look, std::span(lowered_to)));
@@ -99,7 +105,7 @@ void share_out(const Neighbourhood& n, std::span<const float> variance,
   for (const Firefly& f : fireflies) {
     takers.clear();
     for_neighbours(n, f.texel, kShareRadius, [&](uint32_t j, const Neighbour&) {
-      if (is_noisy(n, variance, j)) takers.push_back(j);
+      if (is_noisy(n, variance, values, j)) takers.push_back(j);
     });
     Rgb& value = values[f.texel];
     const Rgb kept = value * (f.luminance / luminance(value));

@@ -25,8 +25,9 @@ struct Firefly {
   float luminance = 0;
 };
 
-/// Finds texels with variance that are brighter than the third brightest (at borders the second) of
-/// those within kFireflyRadius (on strips of one texel's width farther) on the same surface, by
+/// Finds texels with more variance than rounding makes that are brighter than the third brightest
+/// (at borders the second) of those within kFireflyRadius (on strips of one texel's width farther)
+/// on the same surface, by
 ///
 /// - more than kStandsOut standard deviations of the noise level there, so that the filter would
 ///   leave them alone, but no more than kExplained deviations that are stated, by the texel itself

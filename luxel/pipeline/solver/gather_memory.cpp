@@ -93,10 +93,11 @@ uint64_t bytes_of_gather(const light::TexelScene& in, const BakeSettings& settin
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
   if (settings.light != LightPart::all) layers = gather::kSourceLayers;
   const uint64_t maps = layers == 0 ? 0 : in.elements.transmittance.empty() ? 1 : 2;
-  const uint64_t check = settings.bounces == 0
-                             ? 0
-                             : gather::check_bytes(gather::check_rays(
-                                   n * uint64_t(settings.samples), settings.max_error > 0));
+  const uint64_t check =
+      settings.bounces == 0
+          ? 0
+          : gather::check_bytes(gather::check_rays(
+                n * uint64_t(settings.samples), settings.max_error > 0, in.elements.reflectance));
   return bytes_of_all_light(in, settings, stores, shows, layers) + check +
          layers * gather::kLayerBytesPerElement * n +
          maps * gather::kLayerMapBytesPerTexel * square;

@@ -135,7 +135,8 @@ Status bounce_round(const Request& in, float tolerance, Progressive& light, Prog
 
 Status choose_places(const Request& in, Progressive& light, Progress& progress) {
   const GatherParams& params = in.params;
-  const uint64_t rays = check_rays(sum_of(light.hits.samples), params.max_error > 0);
+  const uint64_t rays =
+      check_rays(sum_of(light.hits.samples), params.max_error > 0, in.scene.elements.reflectance);
   if (params.bounces == 0 || rays == 0) return {};
   Progress own;  // its stages are not those of the bake
   LUXEL_TRY(light.check, make_read_check(in.scene, in.sides, light.hits,

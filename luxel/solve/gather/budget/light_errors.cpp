@@ -1,5 +1,7 @@
 #include "luxel/solve/gather/budget/light_errors.h"
 
+#include <algorithm>
+
 #include "luxel/base/free_memory.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/budget/adaptive.h"
@@ -60,15 +62,31 @@ Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJu
   const auto counts = [&](size_t i) { return !is_hidden(light.hits, i); };
   out.all = relative_errors(out.noise_variance, e, light.hits);
   out.noise_p95 = error_p95(out.all, counts);
+  const auto gathered_light = [&](size_t i) {
+    return double(luminance(e[i] - source_of(light.hits, light.direct.irradiance, i)));
+  };
+  const auto apart_of = [&](size_t i) {
+    const std::vector<float>& by_chart = texels.relative_square_apart;
+    if (by_chart.empty()) return 0.0;
+    return double(by_chart[scene.atlas.chart[scene.map.texels[i].triangle_number]]);
+  };
+  // Squares over that of gathered light.
+  const double apart2 = texels.apart * texels.apart;
+  const double safe2 = texels.safe * texels.safe + apart2;
+  const double likely2 = texels.likely * texels.likely + apart2;
   out.variance = out.noise_variance;
+  for (size_t i = 0; i < e.size(); ++i)
+    out.variance[i] += float(safe2 * gathered_light(i) * gathered_light(i));
+  out.expected = expected_squares(
+      e, {out.noise_variance, out.variance, safe2 > 0 ? likely2 / safe2 : 0}, light.hits);
+  // Relative errors are larger where less light is gathered.
+  const double darkest = double(darkest_light(e));
   for (size_t i = 0; i < e.size(); ++i) {
-    const Rgb read = e[i] - source_of(light.hits, light.direct.irradiance, i);
-    const double off = texels.safe * double(luminance(read));
-    out.variance[i] += float(off * off);
+    const double shared = texels.safe * gathered_light(i);
+    const double own = std::max(double(luminance(e[i])), darkest);
+    const double apart = apart_of(i) * own * own;
+    out.variance[i] = out.noise_variance[i] + float(shared * shared + apart);
   }
-  const double likely = texels.safe > 0 ? texels.likely / texels.safe : 0;
-  out.expected =
-      expected_squares(e, {out.noise_variance, out.variance, likely * likely}, light.hits);
   add_shared_noise(texels.gain, light.hits, out);
   free_memory(out.all);
   out.all = relative_errors(out.variance, e, light.hits);

@@ -30,8 +30,9 @@ struct ReadCheckParams {
 
 /// How many rays a bake of so many samples in all spares for it: few beside its own; 0: it is not
 /// worth it. Where an error is asked for there are more, for noise will be small beside what texels
-/// cost.
-uint64_t check_rays(uint64_t samples, bool asks_for_error);
+/// cost; likewise where elements of these reflectances make it tenfold, 1 / (1 - rho) times what
+/// one reflection costs.
+uint64_t check_rays(uint64_t samples, bool asks_for_error, std::span<const Rgb> reflectance);
 /// What so many of them take of memory.
 uint64_t check_bytes(uint64_t rays);
 
@@ -40,7 +41,13 @@ struct ReadCheck {
   std::vector<StoredHit> read;   ///< where those rays read the map
   std::vector<Rgb> reflectance;  ///< of the places themselves
   std::vector<Rgb> direct;       ///< E straight from lights, noisy [W/m^2]
-  TracedHits hits;               ///< of a few rays from each
+  /// Which rays met them. Rays are in the order of their texels: so many that follow one another, a
+  /// group, start at one texel or at a few beside each other.
+  std::vector<uint32_t> ray;
+  size_t rays_of_group = 0;
+  std::vector<uint32_t> texel_of_group, chart_of_group;  ///< a texel of each, and its chart
+  size_t charts = 0;
+  TracedHits hits;  ///< of a few rays from each
 
   size_t size() const { return read.size(); }
 };
@@ -64,6 +71,15 @@ struct LightOfMap {
 /// known.
 struct ReadError {
   double part = 0, standard_error = INFINITY;
+  /// What is read may be right in the mean and yet wrong for each texel, which sees some places and
+  /// not others: above a row of slats one meets bright stripes where another meets the dark between
+  /// them. The mean square of what texels read more or less than `part` says, over that of gathered
+  /// light; 0 where nothing is found.
+  double square_apart = 0;
+  /// The same as parts of the texels' own light, or of darkest_light(), per chart: a ceiling over
+  /// slats has more of it than the floor. Of few rays the mean over all charts counts. Empty:
+  /// nothing is measured.
+  std::vector<float> relative_square_apart{};
 };
 /// Errors: the file of hits cannot be read, cancelled.
 Result<ReadError> read_error(const ReadCheck& check, const LightOfMap& light, Progress& progress);

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/solve/gather/budget/expected_rms.h"
@@ -18,13 +20,15 @@ namespace {
 
 /// By which part of itself the light of `irradiance` is too bright where rays read it, by so many
 /// rays.
-ReadError error_of(const Room& room, std::span<const Rgb> irradiance, uint64_t rays) {
+ReadError error_of(const Room& room, std::span<const Rgb> irradiance, uint64_t rays,
+                   bool follows_near = true) {
   Progress progress;
   const transport::OwnSides sides =
       transport::find_own_sides(room.scene, room.atlas, room.map, *room.tracer);
   TracedHits hits = no_hits(room.elements.size());
   std::fill(hits.samples.begin(), hits.samples.end(), uint16_t(1));
-  const auto check = make_read_check(scene_of(room), sides, hits, {.rays = rays}, progress);
+  const auto check = make_read_check(scene_of(room), sides, hits,
+                                     {.rays = rays, .follows_near = follows_near}, progress);
   EXPECT_TRUE(check) << check.error().message;
   EXPECT_GT(check->size(), 10000u);
   const auto error = read_error(*check, {room.map, room.elements, hits, {}, irradiance}, progress);
@@ -47,6 +51,59 @@ TEST(ReadCheck, TellsAMapThatIsTooBrightByATenth) {
     EXPECT_NEAR(error.part, double(factor) - 1, 4 * error.standard_error + 2e-3) << factor;
     EXPECT_LT(error.standard_error, 5e-3);
   }
+}
+
+/// The share of a place's cosine-weighted rays that leave a box through its floor, less the share
+/// through its ceiling.
+double floor_less_ceiling(const Box3& box, Vec3 from, Vec3 normal) {
+  constexpr uint32_t kRays = 256;
+  const Frame frame = frame_around(normal);
+  double sum = 0;
+  for (uint32_t k = 0; k < kRays; ++k) {
+    const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 99)));
+    const auto way = [](float x, float along, float low, float high) {
+      return along > 0 ? (high - x) / along : along < 0 ? (low - x) / along : INFINITY;
+    };
+    const float up = way(from.y, d.y, box.lower.y, box.upper.y);
+    const float side = std::min(way(from.x, d.x, box.lower.x, box.upper.x),
+                                way(from.z, d.z, box.lower.z, box.upper.z));
+    if (up < side) sum += d.y < 0 ? 1 : -1;
+  }
+  return sum / kRays;
+}
+
+// A map says a fifth too much of a furnace's floor, and a fifth too little of its ceiling. It is
+// right in the mean; but the ceiling reads a fifth of what it sees of the floor too much, the floor
+// as much too little, and walls read either by their height. With rho = 0.1 what places get of this
+// in turn is a tenth of that.
+TEST(ReadCheck, TellsWhatTexelsReadApart) {
+  constexpr float kRho = 0.1f, kOff = 0.2f, kE = kPi / (1 - kRho);
+  const auto room = lay_out(scene::furnace_box({kRho, kRho, kRho}, {1, 1, 1}), 32);
+  const Box3 box = scene::world_bounds(room->scene);
+  const auto is_floor = [&](size_t i) { return room->elements.geometric_normal[i].y > 0.5f; };
+  std::vector<Rgb> light;
+  double apart = 0, read = 0, of_floor = 0, floor = 0;
+  uint32_t chart = 0;
+  for (size_t i = 0; i < room->elements.size(); ++i) {
+    const Vec3 n = room->elements.geometric_normal[i];
+    light.push_back(Rgb{1, 1, 1} * (kE * (1 + kOff * std::round(n.y))));
+    const double off = double(kOff) * floor_less_ceiling(box, room->elements.position[i], n);
+    apart += off * off, read += (1 + off) * (1 + off);
+    if (!is_floor(i)) continue;
+    of_floor += off * off, floor += 1;
+    chart = room->atlas.chart[room->map.texels[i].triangle_number];
+  }
+  const ReadError error = error_of(*room, light, 1 << 19, false);
+  EXPECT_NEAR(error.part, 0, 0.01);
+  EXPECT_NEAR(std::sqrt(error.square_apart), std::sqrt(apart / read),
+              0.1 * std::sqrt(apart / read));
+  // Over the floor's own light, which is said to be 1.2 E, of which it gathers rho.
+  const double relative = double(kRho) / (1 + double(kOff)) * std::sqrt(of_floor / floor);
+  ASSERT_LT(chart, error.relative_square_apart.size());
+  EXPECT_NEAR(std::sqrt(double(error.relative_square_apart[chart])), relative, 0.2 * relative);
+  // A map that is right has nothing of it but what is left of noise.
+  const std::vector<Rgb> right(light.size(), Rgb{kE, kE, kE});
+  EXPECT_LT(error_of(*room, right, 1 << 19, false).square_apart, 1e-2 * apart / read);
 }
 
 // A lamp stands 20 cm above the middle of a floor of 4 x 4 m, whose texels are half a metre wide

@@ -89,7 +89,8 @@ ByNeighbours error_by_neighbours(const atlas::Atlas& atlas, const atlas::TexelMa
 TexelError texel_error(const ByNeighbours& by_neighbours, ReadError measured) {
   constexpr double kLikely = 0.5;
   return {with_measured(by_neighbours.error, measured),
-          with_measured(kLikely * by_neighbours.error, measured), by_neighbours.gain};
+          with_measured(kLikely * by_neighbours.error, measured), by_neighbours.gain,
+          std::sqrt(measured.square_apart), measured.relative_square_apart};
 }
 
 }  // namespace luxel::gather

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/solve/gather/budget/read_check.h"
@@ -30,9 +31,11 @@ ByNeighbours error_by_neighbours(const atlas::Atlas& atlas, const atlas::TexelMa
 /// By how much of itself gathered light is off since texels are as large as they are, as one
 /// standard error.
 struct TexelError {
-  double safe = 0;    ///< on the safe side: to be stated as a bound
-  double likely = 0;  ///< as it most likely is
-  double gain = 1;    ///< ByNeighbours
+  double safe = 0;                             ///< on the safe side: to be stated as a bound
+  double likely = 0;                           ///< as it most likely is
+  double gain = 1;                             ///< ByNeighbours
+  double apart = 0;                            ///< the root of ReadError::square_apart
+  std::vector<float> relative_square_apart{};  ///< ReadError
 };
 /// What is known before is normal with error_by_neighbours(), which holds in most scenes and is
 /// twice the truth in the middle of them. A measurement replaces it as far as it is the surer one:

@@ -301,6 +301,43 @@ TEST(StatedErrors, MatrixStatesTheNoiseOfDirectLight) {
   EXPECT_LT(solved->light.relative_error, 2 * truth);
 }
 
+// A lamp 20 cm from a wall of a white box lights a few of 64 patches by much, and eight probes of
+// each see that badly: all light after it is off by one part, which answers that read the same
+// patches do not show. All together the walls get 4 pi I / (1 - rho), and rho of that after
+// reflections. Middles of texels stand for them: they tell the lamp's light to some hundredths.
+TEST(StatedErrors, MatrixStatesWhatAllItsLightIsOffBy) {
+  constexpr float kWhite = 0.95f;
+  scene::Scene box;
+  const uint32_t white = scene::add_material(box, "white", {kWhite, kWhite, kWhite});
+  scene::Mesh walls;
+  scene::add_box(walls, {-1, -1, -1}, {1, 1, 1}, white);
+  for (auto& triangle : walls.triangles) std::swap(triangle[1], triangle[2]);
+  scene::place(box, std::move(walls));
+  box.lights.emplace_back();
+  box.lights[0].position = {0.1f, -0.8f, 0.2f}, box.lights[0].intensity = {1, 1, 1};
+  Progress progress;
+  const auto p = prepare(std::move(box), 64, progress);
+  ASSERT_TRUE(p);
+  pipeline::BakeSettings settings;
+  settings.direct_samples = 16;
+  auto& own = settings.own.of<matrix::MatrixParams>();
+  own.patches.count = 64, own.factors.rays_per_patch = 512;
+  const double all = 4 * kPi / 24 / (1 - double(kWhite));
+  for (settings.seed = 2; settings.seed <= 3; ++settings.seed) {
+    const auto solved = solve(**p, "matrix", settings, progress);
+    ASSERT_TRUE(solved);
+    const size_t n = solved->light.irradiance.size();
+    double reflected = 0;
+    for (size_t i = 0; i < n; ++i)
+      reflected +=
+          double(luminance(solved->light.irradiance[i] - solved->light.direct[i])) / double(n);
+    const double truth = std::abs(reflected - double(kWhite) * all) / all;
+    EXPECT_GT(truth, 0.008) << settings.seed;
+    EXPECT_GT(solved->light.relative_error, 0.95 * truth) << settings.seed;
+    EXPECT_LT(solved->light.relative_error, 4 * truth) << settings.seed;
+  }
+}
+
 // Two long bakes know the light some times better than the denoiser leaves that of few rays.
 TEST(StatedErrors, OfWhatTheDenoiserLeaves) {
   Progress progress;

@@ -1,9 +1,13 @@
-// Single bright texels in a denoised bake of few samples, and small bright things that must stay.
+// What the denoiser leaves: single bright texels in a bake of few samples, small bright things that
+// must stay, and blotches in a default bake.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/settings/quality.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/viewfactor/point_form_factor.h"
 #include "tests/gallery.h"
 
 namespace luxel::pipeline {
@@ -111,6 +115,62 @@ TEST(Fireflies, NoneInAGalleryWhoseSmallLightsStay) {
   const Highlight before = highlight(noisy, is_in_beam), after = highlight(quiet, is_in_beam);
   EXPECT_GT(after.sum, 0.99 * before.sum);
   EXPECT_GT(after.peak, 0.95f * before.peak);
+}
+
+/// A patch of floor in the sun: x0, x1, z0, z1.
+constexpr float kPatch[4] = {1.2f, 2, -0.4f, 0.4f};
+constexpr float kPatchReflects = 0.8f;
+constexpr Vec3 kSunOnPatch{0.1f, -1, 0};
+
+/// A black wall above the patch. The sun stands behind it: the patch is all that it sees.
+scene::Scene wall_above_a_patch() {
+  scene::Scene scene;
+  const uint32_t black = scene::add_material(scene, "black", {});
+  const uint32_t white =
+      scene::add_material(scene, "white", {kPatchReflects, kPatchReflects, kPatchReflects});
+  scene::Mesh wall;
+  scene::add_quad(wall, {Vec3{0, 0.3f, 0.7f}, {0, 0.3f, -0.7f}, {0, 1.7f, -0.7f}, {0, 1.7f, 0.7f}},
+                  black);
+  scene::place(scene, std::move(wall));
+  scene::add_rectangle(scene, {kPatch[0], kPatch[1], kPatch[2], kPatch[3]}, 0, true, white);
+  scene::PunctualLight sun;
+  sun.kind = scene::PunctualLight::Kind::directional;
+  sun.direction = normalize(kSunOnPatch);
+  sun.intensity = {10, 10, 10};
+  scene.lights.push_back(sun);
+  return scene;
+}
+
+/// E of the wall: what the patch sends back, times the form factor of its rectangle.
+double light_of_patch(Vec3 place) {
+  const auto [x0, x1, z0, z1] = kPatch;
+  const Vec3 corners[] = {{x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}, {x0, 0, z0}};
+  const double arrives = 10 * double(-normalize(kSunOnPatch).y);
+  return double(kPatchReflects) * arrives *
+         viewfactor::point_to_polygon(place, Vec3{1, 0, 0}, corners);
+}
+
+// One ray in fifty meets what lights the wall. 128 rays alone leave 3.3 to 3.7 % of its light, by
+// three seeds; with those that a guide adds it is 1.8 to 2.3 %.
+TEST(Blotches, OfAWallThatBouncedLightAloneReachesAreFaint) {
+  BakeSettings settings;
+  settings.output = std::filesystem::temp_directory_path();
+  settings.resolution = 128;
+  set_quality(
+      Quality::good, [](std::string_view) { return false; }, settings);
+  Progress progress;
+  const auto bake = bake_scene(wall_above_a_patch(), settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  double squares = 0, sum = 0, count = 0;
+  for (size_t i = 0; i < bake->map.texels.size(); ++i) {
+    const Vec3 p = scene::world_position(bake->scene, bake->map.texels[i].sample);
+    if (p.x > 0.01f) continue;
+    const double exact = light_of_patch(p);
+    squares += std::pow(double(luminance(bake->light.irradiance[i])) - exact, 2);
+    sum += exact, ++count;
+  }
+  EXPECT_GT(count, 4000);
+  EXPECT_LT(std::sqrt(squares / count), 0.028 * sum / count);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "luxel/base/share_out.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/rebake.h"
+#include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/gather_memory.h"
 #include "luxel/pipeline/solver/gather_plan.h"
 #include "luxel/pipeline/solver/light_part.h"
@@ -138,6 +139,9 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.bounces = settings.bounces;
   params.tells_direct = settings.light != LightPart::all;
   params.tells_answers = settings.denoise && settings.light == LightPart::all && params.bounces < 0;
+  // Who says how many rays there are gets those.
+  params.more_rays = params.tells_answers && settings.quality == Quality::good &&
+                     settings.samples == numbers_of(Quality::good).samples;
   params.seed = settings.seed;
   return params;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/solver/gather.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/texels/finishing_memory.h"
 #include "luxel/solve/gather/bounce/bounce_layers.h"
@@ -58,13 +59,17 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
   const uint64_t given_back = keeps_places || in_files ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;
   const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;
-  const bool guides = settings.max_error > 0 &&
-                      settings.error_measure == gather::ErrorMeasure::rms && !settings.keep &&
-                      layers == 0;
+  const bool adds = gather_params(settings).more_rays && !settings.keep && layers == 0;
+  const bool guides =
+      adds || (settings.max_error > 0 && settings.error_measure == gather::ErrorMeasure::rms &&
+               !settings.keep && layers == 0);
   const uint64_t guide = guides ? gather::kGuideBytesPerElement : 0;
   const uint64_t traced =
       (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels + guide) * n -
       (in_files ? gather::kBroughtBytesPerElement * n : 0);
+  const uint64_t chosen =
+      adds ? traced + gather::kGrainBytesPerElement * n + gather::kRadiosityBytesPerTexel * square
+           : 0;
   const uint64_t bounced =
       traced +
       (gather::kBouncedBytesPerElement + (rounds ? gather::kGuessBytesPerElement : 0) +
@@ -82,7 +87,7 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
   const uint64_t files =
       (kLightBytesPerElement - (in_files && !shows ? kPartsBytesPerElement : 0)) * n + turned +
       (kSquareFiles + (scatters ? gather::kRadiosityBytesPerTexel : 0)) * square + kept.ending;
-  return std::max({traced + gather::kTargetBytesPerElement * n, rounds ? bounced : 0,
+  return std::max({traced + gather::kTargetBytesPerElement * n, chosen, rounds ? bounced : 0,
                    last - given_back, judged - given_back, denoised, files - given_back});
 }
 

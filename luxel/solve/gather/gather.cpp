@@ -220,6 +220,8 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   LUXEL_TRY_STATUS(know_all_parts(in));
   LUXEL_TRY_STATUS(balance_direct(in, light, progress));
   LUXEL_TRY_STATUS(know_all_parts(in));
+  LUXEL_TRY_STATUS(add_where_grainy(in, light, progress));
+  LUXEL_TRY_STATUS(know_all_parts(in));
   LUXEL_TRY_STATUS(choose_places(in, light, progress));
   // 3. Rounds of more rays where the estimated error is too large.
   for (bool more = in.adds_rounds(); more;) {

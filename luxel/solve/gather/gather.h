@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "luxel/base/bytes_per_entry.h"
@@ -45,6 +46,9 @@ struct GatherParams {
   /// Without rounds: once rays are traced, so many shadow rays, or points, more that direct light
   /// is known as well as the rest, where that costs at most twice what the rays did.
   bool more_shadow_rays = false, more_points = false;
+  /// Without rounds: more rays, to half of what they all cost, where the denoiser would leave light
+  /// mottled; not with layers, or with light of an earlier or for a later bake.
+  bool more_rays = false;
   int bounces = -1;            ///< < 0: all
   float tolerance = 1e-4f;     ///< see BounceParams
   bool tells_direct = false;   ///< Gather::sources; not with layers
@@ -138,6 +142,11 @@ struct Gather {
 inline constexpr float kRoughTolerance = 1e-2f;
 
 inline constexpr uint64_t kEnclosedBytesPerElement = bytes_per_entry(&Gather::enclosed);
+/// With more_rays, while elements are chosen: light and noise by a guess, and elements in order.
+inline constexpr uint64_t kGrainBytesPerElement =
+    bytes_per_entry(&Gather::irradiance, &Gather::direct_variance, &Gather::indirect_variance,
+                    &Gather::pooled_variance, &Gather::errors) +
+    sizeof(std::pair<uint64_t, uint32_t>);
 /// While rays are traced: how many samples each element is to have.
 inline constexpr uint64_t kTargetBytesPerElement = bytes_per_entry(&Gather::samples);
 

@@ -158,15 +158,14 @@ Status find_guide(const Request& in, Progressive& light, Progress& progress) {
   return stopped(progress);
 }
 
-/// Rays that begin anew do so. Returns whether any do.
+}  // namespace
+
 bool begin_anew(std::span<const uint8_t> anew, TracedHits& hits) {
   bool any = false;
   for (size_t i = 0; i < anew.size(); ++i)
     if (anew[i] > 0) begin_guided(hits, i, anew[i]), any = true;
   return any;
 }
-
-}  // namespace
 
 RayCosts costs_of(const Request& in, const Progressive& light) {
   const GatherParams& params = in.params;

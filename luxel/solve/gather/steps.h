@@ -84,6 +84,12 @@ Status bounce_round(const Request& in, float tolerance, Progressive& light, Prog
 /// Without rounds, and from scratch: looks at direct light more finely where it is not as well
 /// known as the rest. Errors: cancelled, the file of hits cannot be read.
 Status balance_direct(const Request& in, Progressive& light, Progress& progress);
+/// Without rounds, where light will be denoised: rays anew, or more of them, of elements whose
+/// light the denoiser would leave mottled. Errors: cancelled, disk full.
+Status add_where_grainy(const Request& in, Progressive& light, Progress& progress);
+/// Rays that begin anew do so, by the level of each element's guide; 0: they do not. Returns
+/// whether any do.
+bool begin_anew(std::span<const uint8_t> anew, TracedHits& hits);
 /// Places at which what rays read is checked, where that costs little beside the rays. Errors:
 /// cancelled, disk full.
 Status choose_places(const Request& in, Progressive& light, Progress& progress);

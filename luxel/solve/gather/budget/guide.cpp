@@ -46,12 +46,12 @@ Groups without_small(Groups all) {
   return out;
 }
 
-Groups groups_of(const light::TexelScene& in, const TracedHits& hits) {
+Groups groups_of(const light::TexelScene& in, const TracedHits& hits, std::span<const float> asks) {
   Groups out;
   out.of_element.assign(hits.size(), kNoGuide);
   std::unordered_map<uint64_t, uint32_t> number;
   for (uint32_t i = 0; i < hits.size(); ++i) {
-    if (is_hidden(hits, i)) continue;
+    if (is_hidden(hits, i) || (!asks.empty() && !(asks[i] > 0))) continue;
     const atlas::Texel& texel = in.map.texels[i];
     const uint64_t chart = in.atlas.chart[texel.triangle_number];
     // Maps have 16,384 texels a side at most.
@@ -133,7 +133,7 @@ std::array<float, kCells> deviations_of(const GuideScene& from, std::span<const 
 
 Result<Guide> make_guide(const light::TexelScene& in, const transport::OwnSides& sides,
                          const LightToGuide& light, uint64_t seed, Progress& progress) {
-  Groups groups = groups_of(in, light.hits);
+  Groups groups = groups_of(in, light.hits, light.asks);
   RadiosityMap sent = empty_radiosity_map(in.map.resolution);
   fill_radiosity(sent, in.map, in.elements, light.hits, light.behind, light.irradiance);
   const GuideScene from{in, sides, sent, hash64(seed, kGuideSeed)};

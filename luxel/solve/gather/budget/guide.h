@@ -22,6 +22,8 @@ struct LightToGuide {
   std::span<const StoredHit> behind;
   std::span<const Rgb> irradiance;  ///< E per element, after all bounces [W/m^2]
   Team* team = nullptr;             ///< whose members share groups out; null: none
+  /// Per element, above 0: it asks for a guide; the others have none. Empty: all ask.
+  std::span<const float> asks = {};
 };
 
 /// Shares of directions for groups of elements: at most 8 x 8 texels of one chart. Rays that tell

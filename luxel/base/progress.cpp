@@ -12,19 +12,25 @@ namespace {
 /// everywhere (luxel/base/share_out.cpp), so that those to come are like those before them.
 constexpr double kSureShare = 0.25;
 constexpr double kMostWhileRunning = 0.99;
+/// What is to come is as much slower than expected as what has come only in part: that is the
+/// machine's share in it, and the rest is that of single stages. So this part of all work counts as
+/// if it had taken what was expected, and the first moments say little.
+constexpr double kAsExpected = 0.25;
 
 }  // namespace
 
 double seconds_left(const Expected& e) {
+  const double usual = kAsExpected * (e.past + e.now + e.future);
+  const auto slow = [&](double taken, double expected) {
+    return expected > 0 ? (taken + usual) / (expected + usual) : 1;
+  };
   // What is left of the running stage: by the plan so far, or by its own speed.
-  const double slow = e.past > 0 ? e.past_taken / e.past : 1;
-  const double by_plan = e.now * slow;
+  const double by_plan = e.now * slow(e.past_taken, e.past);
   const double by_speed = e.now_share > 0 ? e.now_taken / e.now_share : by_plan;
   const bool both = by_plan > 0 && by_speed > 0;
   const double trust = both ? std::min(1.0, e.now_share / kSureShare) : 1;
   const double whole = std::max(by_plan + trust * (by_speed - by_plan), e.now_taken);
-  const double past = e.past + e.now;
-  const double slow_now = past > 0 ? (e.past_taken + whole) / past : 1;
+  const double slow_now = slow(e.past_taken + whole, e.past + e.now);
   return whole - e.now_taken + slow_now * e.future;
 }
 

@@ -77,18 +77,26 @@ TEST(Progress, CancelReachesTheWorker) {
   EXPECT_TRUE(progress.cancelled()) << "a new stage does not forget it";
 }
 
-// 10 s were expected and took 20: all that comes takes twice as long.
+// 10 s were expected and took 20; a quarter of all 40 s counts as expected. So 20 s take 30.
 TEST(SecondsLeft, FollowFromWhatTheWorkHasTakenSoFar) {
   EXPECT_DOUBLE_EQ(seconds_left({10, 10, 0, 0, 0, 30}), 30);
-  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 0, 0, 0, 30}), 60);
-  // A stage of 10 s that has just begun, and 30 s after it.
-  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 10, 0, 0, 30}), 80);
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 0, 0, 0, 30}), 30 * 1.5);
+  // A stage of 10 s that has just begun, and 30 s after it: 12.5 of 50 s count as expected.
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 10, 0, 0, 30}), 40 * 32.5 / 22.5);
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0, 0}), 6) << "no share is known: as was expected";
 }
 
-// Half of a stage of 10 s took 20 s: it will take 40, and what follows is four times as slow.
+// A stage that ended at once, or took a hundred times its tenth of a millisecond, is no measure of
+// the 100 s that are to come.
+TEST(SecondsLeft, DoNotFollowFromTheFirstMoments) {
+  EXPECT_NEAR(seconds_left({1e-4, 0, 10, 0, 0, 90}), 100, 0.1);
+  EXPECT_NEAR(seconds_left({1e-4, 1e-2, 10, 0, 0, 90}), 100, 0.1);
+}
+
+// Half of a stage of 10 s took 20 s: it will take 40. With a quarter of the 15 s as expected, what
+// follows is 43.75 / 13.75 times as slow.
 TEST(SecondsLeft, FollowFromTheSpeedOfTheRunningStage) {
-  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 4 * 5);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 5 * 43.75 / 13.75);
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 30, 0, 0}), 0) << "never below nothing";
   // An eighth took 0.5 s of 10: half of what counts says 4 s, the other half 10.
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 0.5, 0.125, 0}), 6.5);
@@ -105,9 +113,9 @@ TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
   EXPECT_NEAR(progress.snapshot().seconds_left, 2100, 1);
   progress.expect({{"bounce", 500}});  // said anew
   EXPECT_NEAR(progress.snapshot().seconds_left, 1600, 1);
-  // Stages of no time: what was expected of them is far too much, and is forgotten by degrees.
+  // The trace of 1,000 s took none; a quarter of 1,100 s counts as expected.
   progress.begin("write", 10);
-  EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
+  EXPECT_NEAR(progress.snapshot().seconds_left, 100 * 275.0 / 1275, 1) << "no bounces any more";
 }
 
 // No plan says what comes before the end: it is known when it begins.

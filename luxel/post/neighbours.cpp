@@ -113,7 +113,7 @@ Result<std::vector<uint8_t>> find_near_borders(const Neighbourhood& n, Team* tea
       out[i] = is_near_a_border(tile, self, cell, n.radius);
       ++looked_at;
     });
-    progress.advance(looked_at * (kNeighbourhoodUnits / 2));
+    progress.advance(looked_at * kBorderUnits);
     pool.give(std::move(tile));
   };
   LUXEL_TRY(const std::vector<uint32_t> own, luxel::share_out(team, tile_count(n), progress, look));
@@ -213,7 +213,7 @@ Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const Deno
       for (const Candidate& c : found) block.texel.push_back(c.texel);
       block.end.push_back(uint32_t(block.texel.size()));
     }
-    progress.advance((end - begin) * (kNeighbourhoodUnits / 2));
+    progress.advance((end - begin) * kFarUnits);
   };
   LUXEL_TRY(const std::vector<uint32_t> own, luxel::share_out(team, n.far.size(), progress, find));
   LUXEL_TRY_STATUS(give_far(team, own, n, progress));

@@ -33,8 +33,10 @@ struct Neighbourhood {
   std::vector<FarBlock> far;
 };
 
-/// Units of Progress per texel: a unit is what one texel takes of a window in eight lanes.
-inline constexpr uint64_t kNeighbourhoodUnits = 40;
+/// Units of Progress per texel: a unit is what one texel takes of a window in eight lanes. Those
+/// that lie near borders are found first, and then the far neighbours of these.
+inline constexpr uint64_t kBorderUnits = 10, kFarUnits = 80;
+inline constexpr uint64_t kNeighbourhoodUnits = kBorderUnits + kFarUnits;
 
 /// Members of a team share the texels out; null: there is none. Errors: cancelled, another member
 /// gives up.

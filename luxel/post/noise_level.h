@@ -11,7 +11,7 @@ struct NoiseLevel {
 };
 
 /// Units of Progress per texel; as kNeighbourhoodUnits.
-inline constexpr uint64_t kNoiseLevelUnits = 35;
+inline constexpr uint64_t kNoiseLevelUnits = 50;
 
 /// A solver's variances are estimates themselves, and gather's are upper bounds: it takes
 /// stratified samples for independent ones. The noise of neighbours is independent, however, so

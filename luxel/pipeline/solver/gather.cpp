@@ -92,7 +92,9 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
                   const SolveStores& stores, const gather::GatherStores& own,
                   gather::GatherParams& params, std::vector<std::string>& warnings,
                   Progress& progress) {
-  progress.expect_at_end(stages_after_solving(bake_size(in), settings));
+  const BakeSize size = bake_size(in, settings);
+  const std::vector<Stage> after = stages_after_solving(size, settings);
+  progress.expect_at_end(after);
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
   // A trial is the processor's, and says nothing of a device.
   const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0 && !stores.device &&
@@ -104,10 +106,8 @@ Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
   LUXEL_TRY(gather::Forecast forecast, gather::forecast(in, params, own, {part, fewest}, progress));
   LUXEL_TRY(forecast, shared_out(stores.team, forecast, progress));
   progress.finish();
-  const std::vector<Stage> after = stages_after_solving(bake_size(in), settings, forecast.load);
-  progress.expect_at_end(after);
   if (settings.time_budget_s <= 0) {
-    progress.expect(stages_of(forecast, settings));
+    progress.expect(stages_of(forecast, settings, size));
     return {};
   }
   double left =

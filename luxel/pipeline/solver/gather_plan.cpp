@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "luxel/base/machine_load.h"
+#include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/pipeline/solver/gather.h"
 #include "luxel/pipeline/solver/gather_memory.h"
@@ -24,17 +26,29 @@ constexpr double kDirectPart = 0.12, kSupersamplePart = 0.12, kTracePart = 0.76;
 /// Over what rays take: bounces in most scenes; the light of the denoiser's check; the walls that
 /// part its texels, which a ray beside each finds.
 constexpr double kBouncesOverRays = 0.08, kCheckOverRays = 0.04, kWallsOverRays = 0.03;
+/// The check looks at so many texels at least, which is this many times that part of small maps.
+double more_check(double texels) { return std::max(1.0, 1e5 / std::max(texels, 1.0)); }
+/// Charts are looked across, too [s of one core]; and a layer is bounced as the whole is, but
+/// seldom by sparse sweeps.
+constexpr double kWallSecondsPerChart = 1e-4, kLayerOverBounces = 1.3;
 
 }  // namespace
 
-std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings) {
+std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings,
+                             const BakeSize& size) {
   std::vector<Stage> stages{{"direct light", forecast.direct_s},
                             {"supersample", forecast.supersample_s},
                             {"trace rays", forecast.trace_s},
                             {"bounces", forecast.bounces_s}};
   const double rays_s = forecast.direct_s + forecast.trace_s;
-  if (settings.denoise) stages.push_back({"check", kCheckOverRays * rays_s});
-  if (settings.repair_leaks) stages.push_back({"walls", kWallsOverRays * rays_s});
+  if (size.layers > 0)
+    stages.push_back({"layers", kLayerOverBounces * size.layers * forecast.bounces_s});
+  if (settings.denoise)
+    stages.push_back({"check", more_check(size.texels) * kCheckOverRays * rays_s});
+  if (settings.repair_leaks)
+    stages.push_back(
+        {"walls", kWallsOverRays * rays_s + kWallSecondsPerChart * size.charts * machine_load() /
+                                                double(thread_count())});
   return stages;
 }
 
@@ -47,7 +61,8 @@ std::vector<Stage> usual_gather(const BakeSettings& settings, double texels) {
                             {"trace rays", kTracePart * seconds},
                             {"bounces", kBouncesOverRays * seconds}};
   // No walls: those of the layout would be taken for these.
-  if (settings.denoise) stages.push_back({"check", (kCheckOverRays + kWallsOverRays) * seconds});
+  if (settings.denoise)
+    stages.push_back({"check", (more_check(texels) * kCheckOverRays + kWallsOverRays) * seconds});
   return stages;
 }
 
@@ -64,14 +79,14 @@ Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settin
   const gather::GatherStores stores = gather_stores(settings);
   LUXEL_TRY(const gather::Forecast forecast,
             gather::forecast(in, params, stores, {.part = kPlanPart}, progress));
-  for (const Stage& stage : stages_of(forecast, settings)) out.stages.push_back(stage);
+  const BakeSize size = bake_size(in, settings);
+  for (const Stage& stage : stages_of(forecast, settings, size)) out.stages.push_back(stage);
   gather::RoundsForecast rounds;
   if (settings.max_error > 0) {
     LUXEL_TRY(rounds, gather::forecast_rounds(in, params, stores, kRoundsPart, progress));
     out.stages.push_back({"rounds", rounds.trace_s + rounds.bounces_s});
   }
-  for (const Stage& stage : stages_after_solving(bake_size(in), settings, forecast.load))
-    out.stages.push_back(stage);
+  for (const Stage& stage : stages_after_solving(size, settings)) out.stages.push_back(stage);
   for (const Stage& stage : out.stages) out.seconds += stage.seconds;
   if (settings.time_budget_s > 0) out.seconds = std::min(out.seconds, settings.time_budget_s);
   out.rays = forecast.rays + rounds.rays;

@@ -12,7 +12,8 @@ Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settin
                          Progress& progress);
 
 /// The stages of gather, and what they are expected to take.
-std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings);
+std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings,
+                             const BakeSize& size);
 /// UsualFunction of gather.
 std::vector<Stage> usual_gather(const BakeSettings& settings, double texels);
 

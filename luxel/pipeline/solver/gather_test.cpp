@@ -104,6 +104,21 @@ TEST(TimeLeft, IsThatOfABudget) {
   EXPECT_GT(left, 900) << "reading and direct light take a second";
 }
 
+// Each of two layers is denoised, stitched and written as the whole is: the share of the denoiser
+// that finds neighbours is the only one that they have in common.
+TEST(Plan, CountsLayersAfterTheLight) {
+  BakeSettings settings = box_at(16);
+  settings.denoise = true;
+  const std::vector<Stage> one = stages_after_solving({1e6, 1e3, 100, 0}, settings),
+                           three = stages_after_solving({1e6, 1e3, 100, 2}, settings);
+  ASSERT_EQ(one.size(), three.size());
+  for (size_t k = 0; k < one.size(); ++k) {
+    const double times = three[k].seconds / one[k].seconds;
+    const bool is_shared = one[k].name == "denoise";
+    EXPECT_NEAR(times, one[k].name == "draw" ? 1 : is_shared ? 2.5 : 3, 0.1) << one[k].name;
+  }
+}
+
 TEST(Plan, IsForTheGatherSolver) {
   BakeSettings settings = box_at(16);
   settings.solver = "hemicube";

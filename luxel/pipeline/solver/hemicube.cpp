@@ -124,10 +124,12 @@ std::vector<Stage> usual_hemicube(const BakeSettings& settings, double) {
   const double elements = params.max_elements > 0 ? double(params.max_elements) : kUsualElements;
   const double last_s =
       kLookSeconds * elements * 3 * double(params.resolution) * double(params.resolution);
-  if (!(params.max_error > 0)) return {{"hemicubes", last_s}};
+  if (!(params.max_error > 0))
+    return {{"hemicubes", last_s}, {"trace paths", kMeasuredErrorSeconds}};
   return {{"hemicubes", kFirstElements * last_s / 4},
           {"hemicubes", (1 - kFirstElements) * last_s / 4},
-          {"hemicubes", last_s}};
+          {"hemicubes", last_s},
+          {"trace paths", kMeasuredErrorSeconds}};
 }
 
 }  // namespace

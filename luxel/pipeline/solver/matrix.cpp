@@ -169,22 +169,25 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   return out;
 }
 
-/// The time of one core in most scenes [s]: per ray of a patch, and per patch to make it; per texel
-/// for its direct light and to read patches.
-constexpr double kFactorSeconds = 1.9e-7, kPatchSeconds = 1.1e-4;
-constexpr double kTexelSeconds = 3e-5;
+/// The time of one core in most scenes [s]: to see which backs are open; per patch to make it, to
+/// light it, and per ray of it; per texel to read patches, to light it, and to look at borders of
+/// shadows; and for answers at points.
+constexpr double kSidesSeconds = 1.1;
+constexpr double kPatchSeconds = 1.3e-4, kPatchLightSeconds = 3e-4, kFactorSeconds = 1.9e-7;
+constexpr double kTransferSeconds = 6e-6, kTexelLightSeconds = 8e-6, kBorderSeconds = 6e-6;
+constexpr double kCheckSeconds = 0.5;
 
 std::vector<Stage> usual_matrix(const BakeSettings& settings, double texels) {
   const auto params = settings.own.of<matrix::MatrixParams>();
   const double patches = double(params.patches.count);
-  const double texels_s = kTexelSeconds * texels;
-  return {{"patches", kPatchSeconds * patches},
+  return {{"sides", kSidesSeconds},
+          {"patches", kPatchSeconds * patches},
           {"form factors", kFactorSeconds * patches * params.factors.rays_per_patch},
-          {"direct light", kPatchSeconds * patches},
-          {"transfer", 0.2 * texels_s},
-          {"direct light", 0.3 * texels_s},
-          {"supersample", 0.2 * texels_s},
-          {"check", 0.3 * texels_s}};
+          {"direct light", kPatchLightSeconds * patches},
+          {"transfer", kTransferSeconds * texels},
+          {"direct light", kTexelLightSeconds * texels},
+          {"supersample", kBorderSeconds * texels},
+          {"check", kCheckSeconds}};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/machine_load.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/solver/solvers.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -14,11 +15,13 @@ namespace {
 // Measured on a core of an AMD EPYC, in five scenes of shared/scenes.
 
 /// A view is chosen, and drawn.
-constexpr double kDrawSeconds = 0.3;
+constexpr double kDrawSeconds = 0.6;
 constexpr double kSeamSecondsPerTexel = 1e-7, kSeamSecondsPerChart = 3e-5;
 constexpr double kWriteSecondsPerTexel = 4e-7;
-/// Texels of small charts have neighbours on many others, which take long to find.
-constexpr double kDenoiseSecondsPerTexel = 1.1e-5, kDenoiseSecondsPerChart = 1e-4;
+/// Texels of small charts have neighbours on many others, which take long to find. A layer needs
+/// this part of that time again.
+constexpr double kDenoiseSecondsPerTexel = 1.2e-5, kDenoiseSecondsPerChart = 1e-4;
+constexpr double kDenoiseOfLayer = 0.75;
 /// Layout: one thread makes charts and packs them, all look for walls and move samples.
 constexpr double kChartSecondsPerTriangle = 2e-6;
 constexpr double kPackSeconds = 0.03, kPackSecondsPerTriangle = 2e-6;
@@ -28,23 +31,28 @@ constexpr double kCovered = 0.7, kTrianglesPerChart = 4;
 
 }  // namespace
 
-BakeSize bake_size(const light::TexelScene& in) {
-  return {double(in.elements.size()), double(in.map.resolution), double(in.atlas.chart_count)};
+BakeSize bake_size(const light::TexelScene& in, const BakeSettings& settings) {
+  BakeSize out{double(in.elements.size()), double(in.map.resolution), double(in.atlas.chart_count)};
+  if (settings.layers != light::LayerMode::none)
+    if (const auto layers = light::light_layers(in.scene, in.lights, settings.layers))
+      out.layers = double(layers->size());
+  return out;
 }
 
-std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings,
-                                        double load) {
+std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings) {
   const double threads = double(thread_count());
   std::vector<Stage> stages;
   if (settings.denoise)
     stages.push_back({"denoise", (kDenoiseSecondsPerTexel * size.texels +
-                                  kDenoiseSecondsPerChart * size.charts) /
-                                     threads});
-  stages.push_back(
-      {"seams", kSeamSecondsPerTexel * size.texels + kSeamSecondsPerChart * size.charts});
+                                  kDenoiseSecondsPerChart * size.charts) *
+                                     (1 + kDenoiseOfLayer * size.layers) / threads});
+  stages.push_back({"seams", (1 + size.layers) * (kSeamSecondsPerTexel * size.texels +
+                                                  kSeamSecondsPerChart * size.charts)});
   stages.push_back({"draw", kDrawSeconds / threads});
-  stages.push_back({"write files", kWriteSecondsPerTexel * size.side * size.side});
+  stages.push_back(
+      {"write files", (1 + size.layers) * kWriteSecondsPerTexel * size.side * size.side});
   if (settings.html) stages.back().seconds *= 2;
+  const double load = machine_load();
   for (Stage& stage : stages) stage.seconds *= load;
   return stages;
 }
@@ -68,11 +76,14 @@ void expect_usual_bake(const scene::Scene& scene, const BakeSettings& settings,
   const double threads = double(thread_count());
   std::vector<Stage> stages{
       {"charts", kChartSecondsPerTriangle * triangles},
+      {"sides", 0},  // not those that a solver looks at later
       {"packing", kPackSeconds + kPackSecondsPerTriangle * triangles},
       {"walls", kWallSecondsPerTexel * size.texels / threads},
       {"samples", kMoveSecondsPerTexel * size.texels / threads},
   };
   for (const Stage& stage : light) stages.push_back({stage.name, stage.seconds / threads});
+  const double load = machine_load();
+  for (Stage& stage : stages) stage.seconds *= load;
   progress.expect(std::move(stages));
 }
 

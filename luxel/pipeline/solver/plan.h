@@ -28,13 +28,13 @@ nlohmann::json to_json(const Plan& plan);
 struct BakeSize {
   double texels = 0, side = 0;  ///< side of the square
   double charts = 0;
+  double layers = 0;  ///< that light is told apart into
 };
-BakeSize bake_size(const light::TexelScene& in);
+BakeSize bake_size(const light::TexelScene& in, const BakeSettings& settings);
 
-/// Denoiser, seams, preview and files, with what they are expected to take on a machine that takes
-/// `load` times as long as an idle one.
-std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings,
-                                        double load = 1);
+/// Denoiser, seams, preview and files, with what they are expected to take on a machine that is as
+/// busy as it is.
+std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings);
 
 double seconds_of(std::span<const Stage> stages);
 

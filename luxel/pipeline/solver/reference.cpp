@@ -50,7 +50,7 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
 }
 
 /// The time of one core per path in most scenes, and to spread a point over a texel [s].
-constexpr double kPathSeconds = 3e-6, kPointSeconds = 5e-6;
+constexpr double kPathSeconds = 3.4e-6, kPointSeconds = 5e-6;
 
 std::vector<Stage> usual_reference(const BakeSettings& settings, double texels) {
   const int points = std::min(first_supersample(settings), settings.samples);

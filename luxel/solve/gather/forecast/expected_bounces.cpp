@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "luxel/base/check.h"
-#include "luxel/base/clock.h"
 #include "luxel/solve/gather/bounce/convergence.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
@@ -33,9 +33,9 @@ double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
   Gathered g;
   // Once to bring the map into caches: a sweep has many times as many hits and finds it there.
   look_up_all(m, hits, g);
-  const auto start = Clock::now();
+  const std::clock_t start = std::clock();
   const size_t looked_at = look_up_all(m, hits, g);
-  const double seconds = seconds_since(start);
+  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   // The sum is zero, which the compiler does not know.
   return looked_at == 0 ? 0 : (seconds + double(g.sum[0])) / double(looked_at);
 }

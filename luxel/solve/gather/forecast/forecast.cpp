@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "luxel/atlas/neighbours.h"
-#include "luxel/base/clock.h"
+#include "luxel/base/machine_load.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
@@ -17,14 +17,8 @@ namespace {
 
 constexpr uint32_t kSquare = 5;
 
-template <class Task>
-Result<double> seconds_of(const Task& task) {
-  const auto start = Clock::now();
-  LUXEL_TRY_STATUS(task());
-  return seconds_since(start);
-}
-
-/// Processor time: what other programs do meanwhile is not in it.
+/// Of all processors together. A trial is so short that other programs make its own time a matter
+/// of chance.
 template <class Task>
 Result<double> processor_seconds_of(const Task& task) {
   const std::clock_t start = std::clock();
@@ -72,6 +66,7 @@ std::vector<uint32_t> within(const atlas::TexelMap& map, std::span<const uint32_
   return out;
 }
 
+/// Its times are those of one processor, until forecast() has them all.
 struct Trial {
   const light::TexelScene& in;
   const GatherParams& params;
@@ -88,7 +83,7 @@ Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
   trial.direct.irradiance.resize(in.elements.size());
   trial.direct.variance.resize(in.elements.size());
   trial.direct.split_variance.resize(in.elements.size());
-  LUXEL_TRY(const double seconds, seconds_of([&] {
+  LUXEL_TRY(const double seconds, processor_seconds_of([&] {
               return direct_light_again({in.scene, in.elements, in.lights, in.tracer}, trial.texels,
                                         params, trial.direct, progress);
             }));
@@ -105,9 +100,7 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
   const std::vector<uint32_t> known = within(in.map, trial.texels);
   if (known.empty()) return {};
   const double scale = double(in.elements.size()) / double(known.size());
-  // They are too few for many threads, and a call looks at the whole map once: that is no texel's,
-  // and much longer than what is looked for.
-  const int threads = thread_count();
+  // They are too few for many threads, and a call looks at the whole map once: that is no texel's.
   const ThreadLimit one(1);
   uint64_t rays = 0;
   const auto seconds_for = [&](std::span<const uint32_t> among) {
@@ -120,8 +113,8 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
   };
   LUXEL_TRY(const double fixed, seconds_for({}));
   LUXEL_TRY(const double with_fixed, seconds_for(known));
-  const double seconds = std::max(0.0, with_fixed - fixed) / double(threads);
-  out.supersample_s = scale * seconds, out.rays += scale * double(rays);
+  out.supersample_s = fixed + scale * std::max(0.0, with_fixed - fixed);
+  out.rays += scale * double(rays);
   return {};
 }
 
@@ -133,7 +126,7 @@ Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
   const TraceParams params{.seed = trial.params.seed,
                            .scratch_folder = trial.stores.scratch_folder,
                            .follows_near = trial.params.bounces < 0};
-  LUXEL_TRY(const double seconds, seconds_of([&]() -> Status {
+  LUXEL_TRY(const double seconds, processor_seconds_of([&]() -> Status {
               LUXEL_TRY(trial.hits, trace_hits({in.scene, in.atlas, tried, in.lights, in.tracer},
                                                trial.params.samples, params, progress));
               return {};
@@ -154,7 +147,7 @@ Status try_bounces(Trial& trial, Forecast& out) {
                             {params.bounces, params.tolerance}));
   trial.direct = {};  // sweeps need a whole map of radiosity, which is as large
   const double hits = out.hit_bytes / double(sizeof(StoredHit));
-  out.bounces_s = sweeps * hits * seconds_per_hit(in.map, trial.hits) / double(thread_count());
+  out.bounces_s = sweeps * hits * seconds_per_hit(in.map, trial.hits);
   return {};
 }
 
@@ -175,14 +168,12 @@ Result<Forecast> forecast(const light::TexelScene& in, const GatherParams& param
   Forecast out;
   LUXEL_TRY_STATUS(try_direct(trial, out, own));
   LUXEL_TRY_STATUS(try_supersample(trial, out, own));
-  const std::clock_t worked = std::clock();
   LUXEL_TRY_STATUS(try_tracing(trial, out, own));
-  const double worked_s = double(std::clock() - worked) / CLOCKS_PER_SEC;
-  if (worked_s > 0)
-    out.load = std::max(1.0, out.trace_s / trial.scale * double(thread_count()) / worked_s);
-  out.supersample_s *= out.load;
   LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY_STATUS(try_bounces(trial, out));
+  const double of_one = machine_load() / double(thread_count());
+  for (double* seconds : {&out.direct_s, &out.supersample_s, &out.trace_s, &out.bounces_s})
+    *seconds *= of_one;
   return out;
 }
 

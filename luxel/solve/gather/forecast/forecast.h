@@ -11,9 +11,6 @@ struct Forecast {
   double direct_s = 0, supersample_s = 0, trace_s = 0, bounces_s = 0;
   double rays = 0;       ///< shadow rays and those of near paths included
   double hit_bytes = 0;  ///< of stored hits
-  /// Seconds of the trial over those that its threads have worked: 1, or more beside other
-  /// programs.
-  double load = 1;
   double seconds() const { return direct_s + supersample_s + trace_s + bounces_s; }
 };
 

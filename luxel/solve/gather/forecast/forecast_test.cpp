@@ -30,6 +30,7 @@ TEST(Forecast, CountsTheRaysAndHitsOfTheWhole) {
   ASSERT_TRUE(hits);
   EXPECT_NEAR(forecast->hit_bytes / double(hits->bytes_in_memory()), 1, 0.15);
   EXPECT_GT(forecast->direct_s, 0);
+  EXPECT_GT(forecast->supersample_s, 0);
   EXPECT_GT(forecast->trace_s, 0);
   EXPECT_GT(forecast->bounces_s, 0);
 }

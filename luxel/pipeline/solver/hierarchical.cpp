@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/base/machine_load.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/measured_error.h"
@@ -41,6 +42,7 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
             hierarchical::solve(in.scene, in.tracer, own.solve, progress));
   hierarchical::RepresentParams represent;
   represent.seconds = seconds_left(settings.time_budget_s, progress.stages());
+  represent.later_seconds = kMeasuredErrorSeconds * machine_load() / double(thread_count());
   hierarchical::LeftOut left_out;
   LUXEL_TRY(const hierarchical::LightMesh mesh,
             hierarchical::represent(solution, in.scene, in.tracer, own.mesh, represent, progress,

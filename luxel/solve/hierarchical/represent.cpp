@@ -28,6 +28,9 @@ constexpr double kSettled = 2.5;
 constexpr int kMostFeedbacks = 4;
 /// The last mesh takes so many times as long as those before it, at most.
 constexpr double kLastMesh = 2;
+/// What is mostly to come, in times of the slowest mesh so far: after a mesh that says what to
+/// divide, after all of these, and after one that something was fed back into.
+constexpr double kToComeWhileRefining = 4.5, kToComeWhileSettling = 3.3, kToComeAtLast = 1.6;
 
 /// A solution, and how light at its points is computed.
 struct PointScene {
@@ -143,11 +146,16 @@ Precision precision_of(const Solution& s, const MeshParams& mesh_params,
 struct Timing {
   double seconds = INFINITY;
   Clock::time_point start = Clock::now();
-  double mesh_s = 0;  ///< what the slowest mesh took
+  double mesh_s = 0;   ///< what the slowest mesh took
+  double later_s = 0;  ///< what the caller does after it
 
   double left() const { return seconds - seconds_since(start); }
   /// Whether there is time for another mesh, and the last one, which is more exact, after it.
   bool has_time() const { return left() > (1 + kLastMesh) * mesh_s; }
+  /// Tells what is to come, in times of the slowest mesh.
+  void expect(double meshes, Progress& progress) const {
+    progress.expect_within(std::min(meshes * mesh_s, std::max(left(), 0.0)) + later_s);
+  }
 };
 
 /// A mesh of the leaves there are.
@@ -162,6 +170,7 @@ Result<LightMesh> timed_mesh(Refining& r, Timing& timing, Progress& progress) {
 /// last feedback nothing looks at another mesh.
 Status settle(Refining& r, LightMesh mesh, Timing& timing, LeftOut& left_out, Progress& progress) {
   for (int k = 0;; ++k) {
+    timing.expect(k == 0 ? kToComeWhileSettling : kToComeAtLast, progress);
     LUXEL_TRY(const double change, feed_back(r.s, r.tracer, mesh, progress));
     if (change <= kSettled * r.eps || k + 1 == kMostFeedbacks) return {};
     left_out.feedback = !timing.has_time();
@@ -204,11 +213,12 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
   const double eps = precision.eps;
   Known known;
   Refining r{s, scene, tracer, precision.rough, eps, known};
-  Timing timing{params.seconds};
+  Timing timing{.seconds = params.seconds, .later_s = params.later_seconds};
   LeftOut out_of_time;
   for (int round = 0;; ++round) {
     // A mesh of the leaves there are, and those whose interpolants are off.
     LUXEL_TRY(LightMesh mesh, timed_mesh(r, timing, progress));
+    timing.expect(kToComeWhileRefining, progress);
     LUXEL_TRY(const std::vector<size_t> leaves,
               leaves_off(r.points(), eps, r.known.light, mesh, progress));
     out_of_time.refinement = !leaves.empty() && !timing.has_time();
@@ -217,6 +227,7 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
       // The solution learns from the mesh, and the last mesh shows what it has learned.
       LUXEL_TRY_STATUS(settle(r, std::move(mesh), timing, out_of_time, progress));
       if (left_out) *left_out = out_of_time;
+      timing.expect(kToComeAtLast, progress);
       r.known.light.at.clear();
       return make_light_mesh(s, scene, tracer, precision.fine, r.known, progress);
     }

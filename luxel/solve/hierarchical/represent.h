@@ -14,6 +14,8 @@ struct RepresentParams {
   /// Within which everything should be done, from the call on: when it is short, refinement ends
   /// early, and less is fed back. The first and the last mesh are made all the same.
   double seconds = INFINITY;
+  /// What the caller does after it, which Progress is told with what is to come here.
+  double later_seconds = 0;
 };
 
 /// What there was no time for.

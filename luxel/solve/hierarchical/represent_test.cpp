@@ -38,6 +38,18 @@ scene::Scene lamp_over_floor() {
   return scene;
 }
 
+// Progress knows the time that is left when the last mesh is made, and that of those after it. The
+// meshes themselves take a moment.
+TEST(Represent, TellsWhatIsToCome) {
+  const auto s = solved(lamp_over_floor());
+  Progress progress;
+  progress.expect_at_end({{"write", 1000}});
+  RepresentParams params;
+  params.later_seconds = 5000;
+  ASSERT_TRUE(represent(s->solution, s->scene, *s->tracer, {}, params, progress));
+  EXPECT_NEAR(progress.snapshot().seconds_left, 6000, 100);
+}
+
 /// The root of the mean square difference to the closed form.
 double error_below(const Solved& s, const LightMesh& mesh) {
   constexpr int n = 160;

@@ -29,8 +29,9 @@ struct Expected {
   double now_share = 0;             ///< of it that is done; 0: not known
   double future = 0;                ///< of stages to come
 };
-/// Seconds to the end, if what is to come is as much slower than expected as what has come. How
-/// fast the running stage goes counts for more the more of it is done, and alone after a quarter.
+/// Seconds to the end, if what is to come is as much slower than expected as what has come and a
+/// quarter of all work that took what was expected. How fast the running stage goes counts for more
+/// the more of it is done, and alone after a quarter.
 double seconds_left(const Expected& e);
 
 /// Work calls begin() per stage and advance() per tile or iteration, never per ray. A watcher may

@@ -236,10 +236,12 @@ double coverage_marks(const Candidate& candidate, const View& view) {
   return 1;
 }
 
-/// Things are shown by their lit side, with shadows: three quarters in the light are enough.
+/// Things are shown by their lit side, and by their shadows: full marks where three quarters to
+/// nine tenths of what is seen lie in the light. With the light straight behind the eye there is no
+/// form.
 double light_marks(const Stage& stage, const View& view) {
   if (stage.glimpse.sources.empty()) return 1;
-  return 0.3 + 0.7 * std::min(1.0, view.lit / 0.75);
+  return 0.3 + 0.7 * std::min(1.0, view.lit / 0.75) - 1.5 * std::max(0.0, view.lit - 0.9);
 }
 
 /// Whether lights leave what cameras show in the dark. The surroundings leave nothing so.

@@ -171,6 +171,21 @@ TEST(FitCamera, ShowsThingsFromTheirLitSide) {
   }
 }
 
+// A cube with an edge towards the sun: with the sun straight behind the eye all that is seen would
+// be as bright, and no shadow seen.
+TEST(FitCamera, DoesNotLookAlongTheSunsRays) {
+  Scene scene;
+  const uint32_t m = gray(scene, false);
+  scene::Mesh cube;
+  scene::add_box(cube, {-1, -1, -1}, {1, 1, 1}, m);
+  scene::place(scene, std::move(cube));
+  const Vec3 towards_sun{1, 1, 1};
+  add_day(scene, towards_sun);
+  const Vec3 back = column(fitted(scene, 1.5f).world_from_camera, 2);
+  EXPECT_GT(dot(back, normalize(towards_sun)), 0.3f);
+  EXPECT_LT(dot(back, normalize(towards_sun)), 0.9f);
+}
+
 /// Where a point is in a camera's picture: from -1 to 1 across and upwards, for parallel rays.
 Vec2 seen_at(const scene::Camera& camera, float aspect, Vec3 p) {
   const Vec3 d = p - column(camera.world_from_camera, 3);

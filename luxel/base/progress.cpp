@@ -12,9 +12,9 @@ namespace {
 /// everywhere (luxel/base/share_out.cpp), so that those to come are like those before them.
 constexpr double kSureShare = 0.25;
 constexpr double kMostWhileRunning = 0.99;
-/// What is to come is as much slower than expected as what has come only in part: that is the
-/// machine's share in it, and the rest is that of single stages. So this part of all work counts as
-/// if it had taken what was expected, and the first moments say little.
+/// If past stages were slower than expected, the machine is a part of the reason, and stages to
+/// come will be slower too; the rest of it concerns single stages. So this part of all work counts
+/// as if it had taken what was expected, and the first moments say little.
 constexpr double kAsExpected = 0.25;
 
 }  // namespace

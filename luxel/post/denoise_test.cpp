@@ -260,7 +260,7 @@ TEST(Denoise, DirectFirefliesAreLookedAtAgain) {
     }
 }
 
-// What is known for sure stays, however bright and small: halves of rays that agree differ by
+// Light that is known for sure stays, however bright and small: halves of rays that agree differ by
 // rounding alone, a millionth of the light.
 TEST(Denoise, ABrightTexelWithoutVarianceStays) {
   for (const float deviation : {0.0f, 60e-6f}) {

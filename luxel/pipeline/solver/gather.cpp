@@ -139,7 +139,7 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.bounces = settings.bounces;
   params.tells_direct = settings.light != LightPart::all;
   params.tells_answers = settings.denoise && settings.light == LightPart::all && params.bounces < 0;
-  // Who says how many rays there are gets those.
+  // A given number of rays is kept to.
   params.more_rays = params.tells_answers && settings.quality == Quality::good &&
                      settings.samples == numbers_of(Quality::good).samples;
   params.seed = settings.seed;

@@ -71,7 +71,7 @@ bool TexelRays::reads(const trace::Hit& hit) const {
   return !params.follows_near || !goes_on(near, path);
 }
 
-/// What of `count` rays reads the map, in their order, and their numbers.
+/// Those of `count` rays that read the map, in their order, and their numbers.
 std::vector<trace::Hit> hits_that_read(const TexelRays& from, size_t count,
                                        std::vector<uint32_t>& numbers) {
   std::vector<trace::Ray> rays(count);
@@ -89,8 +89,8 @@ std::vector<trace::Hit> hits_that_read(const TexelRays& from, size_t count,
   return hits;
 }
 
-/// What one place tells: by how much more it seems to send than it does, and what it sends of light
-/// that has not been reflected before; luminances [W/m^2].
+/// The answer of one place: by how much more it seems to send than it does, and what it sends of
+/// light that has not been reflected before; luminances [W/m^2].
 struct AtPlace {
   double read = 0, excess = 0, source = 0;
 };

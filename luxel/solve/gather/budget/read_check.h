@@ -71,12 +71,12 @@ struct LightOfMap {
 /// known.
 struct ReadError {
   double part = 0, standard_error = INFINITY;
-  /// What is read may be right in the mean and yet wrong for each texel, which sees some places and
-  /// not others: above a row of slats one meets bright stripes where another meets the dark between
-  /// them. The mean square of what texels read more or less than `part` says, over that of gathered
-  /// light; 0 where nothing is found.
+  /// Light that is read may be right in the mean and yet wrong for each texel, which sees some
+  /// places and not others: above a row of slats one meets bright stripes where another meets the
+  /// dark between them. The mean square of what texels read more or less than `part` says, over
+  /// that of gathered light; 0 where nothing is found.
   double square_apart = 0;
-  /// The same as parts of the texels' own light, or of darkest_light(), per chart: a ceiling over
+  /// As parts of the texels' own light, or of darkest_light(), per chart: a ceiling over
   /// slats has more of it than the floor. Of few rays the mean over all charts counts. Empty:
   /// nothing is measured.
   std::vector<float> relative_square_apart{};

@@ -23,12 +23,13 @@ constexpr size_t kFewestJoined = kFewestParted;
 /// Triangles farther than this from all pairs, in distances of a typical one, stay whole: light
 /// comes around the end of a barrier within three texels.
 constexpr double kNear = 3;
-/// Triangles that a plane crosses along less than this, in distances of a typical pair, stay whole:
-/// half a texel on the other side of a barrier lies beneath it, or is the texel that it stands on.
-constexpr double kShortestCut = 0.5;
-/// A plane parts as many pairs, or more, per triangle that it cuts. A wall across squares of half a
-/// texel does, petals and blades of grass do not, each of which parts a texel or two.
-constexpr size_t kPartedPerTriangle = 2;
+/// Triangles whose edges are shorter than this, in distances of a typical pair, stay whole: the
+/// half of a texel on the other side of a barrier lies beneath it, or is the texel that it stands
+/// on.
+constexpr double kFine = 0.5;
+/// A plane parts so many pairs, or more, per triangle that it cuts. A wall does; petals and blades
+/// of grass that stand on fine triangles do not, each of which parts a texel or two.
+constexpr size_t kPartedPerTriangle = 1;
 /// More planes than these are not looked at in one piece.
 constexpr size_t kMostCandidates = 256, kMostScored = 32;
 
@@ -178,7 +179,7 @@ class Cutter {
   }
 
   /// The triangles of a piece that a plane of the world is to cut. Those that are not near any pair
-  /// are not cut, nor those that it only grazes: they lie where most of them does.
+  /// are not cut, nor fine ones: they lie where most of them does.
   Cut cut_of(uint32_t piece, const Plane& world, const PairPlaces& places) const {
     Cut cut{scene::plane_in_object(world, world_from_object_), kOnPlane * places.distance(),
             std::vector<uint8_t>(label_.size())};
@@ -201,19 +202,19 @@ class Cutter {
 
   bool is_cut_near(size_t triangle, const Cut& cut, const PairPlaces& places) const {
     std::vector<DVec3> on_plane;  // world
+    double longest = 0;           // edge, in m
     for (size_t k = 0; k < 3; ++k) {
       const Vec3 p = mesh_.positions[mesh_.triangles[triangle][k]];
       const Vec3 q = mesh_.positions[mesh_.triangles[triangle][(k + 1) % 3]];
       const double a = cut.plane.height(to_double(p)), b = cut.plane.height(to_double(q));
-      if (std::abs(a) <= cut.tolerance)
-        on_plane.push_back(to_double(transform_point(world_from_object_, p)));
-      if (std::min(a, b) >= -cut.tolerance || std::max(a, b) <= cut.tolerance) continue;
       const DVec3 from = to_double(transform_point(world_from_object_, p));
       const DVec3 to = to_double(transform_point(world_from_object_, q));
+      longest = std::max(longest, length(to - from));
+      if (std::abs(a) <= cut.tolerance) on_plane.push_back(from);
+      if (std::min(a, b) >= -cut.tolerance || std::max(a, b) <= cut.tolerance) continue;
       on_plane.push_back(from + (to - from) * (a / (a - b)));
     }
-    return on_plane.size() == 2 &&
-           length(on_plane[1] - on_plane[0]) >= kShortestCut * places.distance() &&
+    return on_plane.size() == 2 && longest >= kFine * places.distance() &&
            places.is_near(on_plane[0], on_plane[1]);
   }
 

@@ -27,14 +27,14 @@ struct CutScene {
 
 /// Divides the triangles of each chart along planes until no plane parts kFewestParted pairs in one
 /// piece any more: the plane that parts most pairs first, each piece for itself (a binary space
-/// partition). A plane that would cut more triangles than half the pairs that it parts is left out:
-/// tufts of grass would become finer than texels. Pieces that no pair connects may share a group,
-/// so a house on a lawn cuts it into the part inside and the part outside. Planes cut what lies
-/// near the pairs; other triangles of the piece, and those that they cross along less than half a
-/// texel, go to one side whole. In the end no more vertices are left than the borders of groups
-/// need (luxel/scene/join_pieces.h), and no new T-junctions (luxel/scene/t_junctions.h). An
-/// instance that shares its mesh gets one of its own. `atlas` is that of `scene`. `group` is that
-/// of an earlier cut, AtlasParams::group of the atlas: its groups stay apart.
+/// partition). A plane that would cut more triangles than it parts pairs is left out: tufts of
+/// grass would become finer than texels. Pieces that no pair connects may share a group, so a house
+/// on a lawn cuts it into the part inside and the part outside. Planes cut what lies near the
+/// pairs; other triangles of the piece, and those smaller than half a texel, go to one side whole.
+/// In the end no more vertices are left than the borders of groups need
+/// (luxel/scene/join_pieces.h), and no new T-junctions (luxel/scene/t_junctions.h). An instance
+/// that shares its mesh gets one of its own. `atlas` is that of `scene`. `group` is that of an
+/// earlier cut, AtlasParams::group of the atlas: its groups stay apart.
 CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted,
                     std::span<const uint32_t> group = {});
 

@@ -1,5 +1,5 @@
-// What the denoiser leaves: single bright texels in a bake of few samples, small bright things that
-// must stay, and blotches in a default bake.
+// Single bright texels and blotches that the denoiser may leave, in bakes of few samples and by
+// default, and small bright things that must stay.
 #include <gtest/gtest.h>
 
 #include <cmath>

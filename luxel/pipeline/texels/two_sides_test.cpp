@@ -241,7 +241,7 @@ TEST(TwoSides, SidesAreSplitOnce) {
   }
 }
 
-/// Whether the triangles of a mesh are one-sided once sides are split.
+/// True where the triangles of a mesh are one-sided once sides are split.
 bool is_one_sided(scene::Scene s) {
   const size_t triangles = s.meshes[0].triangles.size();
   Progress progress;

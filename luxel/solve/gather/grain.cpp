@@ -38,7 +38,7 @@ struct AlikeElements {
   std::vector<uint32_t> elements;
   double variance = 0, light = 0;  ///< means: of the luminance's variance, of luminance
 
-  /// What the filter leaves of a standard error.
+  /// The part of a standard error that the filter leaves.
   double left() const {
     const double per_texel = kWindowTexels / double(kCellTexels * kCellTexels);
     const double window = std::min(kWindowTexels, per_texel * double(elements.size()));

@@ -28,8 +28,8 @@ constexpr double kSettled = 2.5;
 constexpr int kMostFeedbacks = 4;
 /// The last mesh takes so many times as long as those before it, at most.
 constexpr double kLastMesh = 2;
-/// What is mostly to come, in times of the slowest mesh so far: after a mesh that says what to
-/// divide, after all of these, and after one that something was fed back into.
+/// The work that is mostly to come, in times of the slowest mesh so far: after a mesh that says
+/// what to divide, after all of these, and after one that something was fed back into.
 constexpr double kToComeWhileRefining = 4.5, kToComeWhileSettling = 3.3, kToComeAtLast = 1.6;
 
 /// A solution, and how light at its points is computed.

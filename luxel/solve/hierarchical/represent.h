@@ -14,7 +14,7 @@ struct RepresentParams {
   /// Within which everything should be done, from the call on: when it is short, refinement ends
   /// early, and less is fed back. The first and the last mesh are made all the same.
   double seconds = INFINITY;
-  /// What the caller does after it, which Progress is told with what is to come here.
+  /// Seconds of the caller's own work after it. Progress is told of them, too.
   double later_seconds = 0;
 };
 

@@ -41,8 +41,8 @@ struct ReadCheck {
   std::vector<StoredHit> read;   ///< where those rays read the map
   std::vector<Rgb> reflectance;  ///< of the places themselves
   std::vector<Rgb> direct;       ///< E straight from lights, noisy [W/m^2]
-  /// Which rays met them. Rays are in the order of their texels: so many that follow one another, a
-  /// group, start at one texel or at a few beside each other.
+  /// The numbers of the rays that met them. Rays are in the order of their texels: so many that
+  /// follow one another, a group, start at one texel or at a few beside each other.
   std::vector<uint32_t> ray;
   size_t rays_of_group = 0;
   std::vector<uint32_t> texel_of_group, chart_of_group;  ///< a texel of each, and its chart

@@ -17,8 +17,8 @@ namespace {
 
 constexpr uint32_t kSquare = 5;
 
-/// Of all processors together. A trial is so short that other programs make its own time a matter
-/// of chance.
+/// The time of all processors together. A trial is so short that other programs make its own time a
+/// matter of chance.
 template <class Task>
 Result<double> processor_seconds_of(const Task& task) {
   const std::clock_t start = std::clock();

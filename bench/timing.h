@@ -1,11 +1,11 @@
 // Milliseconds that can be compared, and where seconds went.
 #pragma once
 
-#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "luxel/base/clock.h"
 #include "luxel/base/progress.h"
 
 namespace luxel::bench {
@@ -14,12 +14,6 @@ namespace luxel::bench {
 /// does so to all. Each runs once just before it is timed: the caches hold its memory, as they do
 /// frame after frame.
 std::vector<double> time_in_turn(const std::vector<std::function<void()>>& tasks, int rounds);
-
-/// Seconds of all of this process's threads since a call of std::clock(). Those of a clock on the
-/// wall say how busy the machine is, too.
-inline double processor_seconds_since(std::clock_t start) {
-  return double(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 /// The stages of `progress` from number `first` on, those of one name as one, in the order of their
 /// first.

@@ -38,7 +38,7 @@ Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSe
   Timed out;
   LUXEL_TRY(out.light, found->solve(p.input(), settings, {}, {}, progress));
   out.seconds = seconds_since(start);
-  out.processor_seconds = double(std::clock() - processors) / CLOCKS_PER_SEC;
+  out.processor_seconds = processor_seconds_since(processors);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "luxel/base/check.h"
+#include "luxel/base/clock.h"
 #include "luxel/solve/gather/bounce/convergence.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
@@ -35,7 +36,7 @@ double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
   look_up_all(m, hits, g);
   const std::clock_t start = std::clock();
   const size_t looked_at = look_up_all(m, hits, g);
-  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  const double seconds = processor_seconds_since(start);
   // The sum is zero, which the compiler does not know.
   return looked_at == 0 ? 0 : (seconds + double(g.sum[0])) / double(looked_at);
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "luxel/atlas/neighbours.h"
+#include "luxel/base/clock.h"
 #include "luxel/base/machine_load.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/adaptive.h"
@@ -23,7 +24,7 @@ template <class Task>
 Result<double> processor_seconds_of(const Task& task) {
   const std::clock_t start = std::clock();
   LUXEL_TRY_STATUS(task());
-  return double(std::clock() - start) / CLOCKS_PER_SEC;
+  return processor_seconds_since(start);
 }
 
 }  // namespace

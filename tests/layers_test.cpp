@@ -108,13 +108,11 @@ TEST(Layers, AddUpToTheLightmap) {
       EXPECT_TRUE(fs::exists(s.path / "b" / file.get<std::string>())) << file;
 }
 
-// The lightmap itself has the same bits with layers and without. (A default bake without them may
-// add rays: docs/method/layers.md.)
+// The lightmap itself has the same bits with layers and without. A default bake adds rays here.
 TEST(Layers, LeaveTheLightmapAsItIs) {
   const ScratchFolder s;
   const fs::path scene = write_box(s, "box.glb", true, true);
-  for (const std::string options :
-       {"--samples 32 --resolution 64 ", "--quality draft --resolution 64 "}) {
+  for (const std::string options : {"--samples 32 --resolution 64 ", "--resolution 64 "}) {
     bake(scene, s.path / "a", options);
     bake(scene, s.path / "b", options + "--layers per-light");
     EXPECT_EQ(slurp(s.path / "a" / "lightmap.exr"), slurp(s.path / "b" / "lightmap.exr"));

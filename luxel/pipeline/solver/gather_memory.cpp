@@ -59,10 +59,10 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
   const uint64_t given_back = keeps_places || in_files ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;
   const uint64_t levels = rounds || settings.keep || follows ? light::kLevelBytesPerElement : 0;
-  const bool adds = gather_params(settings).more_rays && !settings.keep && layers == 0;
+  const bool adds = gather_params(settings).more_rays && !settings.keep;
   const bool guides =
       adds || (settings.max_error > 0 && settings.error_measure == gather::ErrorMeasure::rms &&
-               !settings.keep && layers == 0);
+               !settings.keep);
   const uint64_t guide = guides ? gather::kGuideBytesPerElement : 0;
   const uint64_t traced =
       (light::kDirectBytesPerElement + gather::kTracedBytesPerElement + levels + guide) * n -

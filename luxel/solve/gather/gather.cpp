@@ -165,11 +165,23 @@ std::vector<uint16_t> rays_of(const TracedHits& hits) {
   return out;
 }
 
+/// Where some elements follow a guide, an element without one may have neighbours of little noise,
+/// and two bright rays, one in each half, so that it seems to have little itself. Its rays taken as
+/// independent tell: it gets the larger of both variances.
+void raise_beside_guided(const TracedHits& hits, std::span<const float> pooled,
+                         std::span<float> split) {
+  for (size_t i = 0; i < split.size(); ++i)
+    if (!is_guided(hits, i)) split[i] = std::max(split[i], pooled[i]);
+}
+
 /// Moves what the caller gets out of what is known in the end.
 void take_result(Progressive&& light, Gather& out) {
   out.relative_error = light.errors.expected.rms();
   out.relative_noise = std::sqrt(light.errors.expected.noise);
   out.relative_unseen = light.errors.expected.rms_of_gathered_light();
+  if (!light.hits.guide.of_element.empty())
+    raise_beside_guided(light.hits, variances_of(light.errors.gathered, light.bounced.irradiance),
+                        light.bounced.split_variance);
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);

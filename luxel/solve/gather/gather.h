@@ -47,7 +47,7 @@ struct GatherParams {
   /// is known as well as the rest, where that costs at most twice what the rays did.
   bool more_shadow_rays = false, more_points = false;
   /// Without rounds: up to 45 % more rays where the denoiser would leave light mottled; not with
-  /// layers, and not with GatherStores::earlier or keep.
+  /// GatherStores::earlier or keep.
   bool more_rays = false;
   int bounces = -1;            ///< < 0: all
   float tolerance = 1e-4f;     ///< see BounceParams

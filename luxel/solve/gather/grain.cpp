@@ -137,8 +137,7 @@ RoundPlan plan_grain(const Request& in, std::span<const float> grain, const Prog
 }  // namespace
 
 Status add_where_grainy(const Request& in, Progressive& light, Progress& progress) {
-  const bool knows_rays = in.stores.keep || in.stores.earlier || in.layers;
-  if (!in.params.more_rays || in.adds_rounds() || knows_rays) return {};
+  if (!in.params.more_rays || in.adds_rounds() || in.knows_rays_by_number()) return {};
   LUXEL_TRY(const Guessed guessed, look_at_guess(in, light, progress));
   const std::vector<float> grain = grain_of(in, light.hits, guessed);
   if (std::ranges::none_of(grain, [](float g) { return g > 0; })) return {};

@@ -141,7 +141,7 @@ RoundPlan plan_rms(const Request& in, double affordable, const Progressive& ligh
 
 /// Whether so much noise is too much that it is worth rays to know where it comes from.
 bool asks_for_guide(const Request& in, const Progressive& light) {
-  if (in.stores.keep || in.stores.earlier || in.layers) return false;  // they know rays by number
+  if (in.knows_rays_by_number()) return false;
   const double asked = double(in.params.max_error) * double(in.params.max_error);
   return light.hits.guide.of_element.empty() &&
          light.errors.expected.noise > kNoiseWorthAGuide * asked;

@@ -28,6 +28,8 @@ struct Request {
   size_t layer_count() const { return layers ? layers->size() : 0; }
   /// Whether rays are added where light is not known well enough.
   bool adds_rounds() const { return params.max_error > 0 || params.seconds > 0; }
+  /// Whether rays are kept for later bakes, or were: those do not follow a guide.
+  bool knows_rays_by_number() const { return stores.keep || stores.earlier; }
   /// Whether direct light may be looked at more finely than at first.
   bool may_look_finer() const {
     return adds_rounds() || params.more_shadow_rays || params.more_points;

@@ -81,14 +81,15 @@ TEST(GuidedRays, AreTheFirstOfEachCell) {
   }
 }
 
-/// E that rays bring from a map, in rounds up to so many samples.
+/// E that rays bring from a map, in rounds up to so many samples. `layers`: null: hits have none.
 std::vector<Rgb> light_of(const Room& room, const RadiosityMap& sent, TracedHits& hits,
-                          std::initializer_list<uint16_t> rounds) {
+                          std::initializer_list<uint16_t> rounds,
+                          const light::LightLayers* layers = nullptr) {
   Progress progress;
   const light::TexelScene in = scene_of(room);
   for (const uint16_t samples : rounds)
     EXPECT_TRUE(trace_more(trace_scene(in), std::vector<uint16_t>(hits.size(), samples),
-                           {.seed = 5, .follows_near = true}, hits, progress));
+                           {.seed = 5, .follows_near = true, .layers = layers}, hits, progress));
   std::vector<Rgb> e(hits.size());
   const std::vector<Rgb> none(hits.size());
   std::vector<float> variance(hits.size()), split(hits.size());
@@ -98,7 +99,8 @@ std::vector<Rgb> light_of(const Room& room, const RadiosityMap& sent, TracedHits
 }
 
 // Whatever the shares, the light is the same in the mean. The Cornell box without its front, under
-// a bright sky: rays meet walls, escape, and are followed on from corners.
+// a bright sky: rays meet walls, escape, and are followed on from corners. Layers add up to what
+// they bring.
 TEST(GuidedRays, BringTheSameLight) {
   scene::Scene open = scene::cornell_box();
   open.background = {0.3f, 0.5f, 1};
@@ -106,11 +108,13 @@ TEST(GuidedRays, BringTheSameLight) {
   const size_t n = room->elements.size();
   std::vector<Rgb> some(n);
   for (size_t i = 0; i < n; ++i) some[i] = Rgb{1, 1, 1} * float(i % 17);
-  TracedHits equal = no_hits(n), guided = no_hits(n);
+  const auto layers = light::light_layers(room->scene, room->lights, light::LayerMode::per_light);
+  ASSERT_TRUE(layers && layers->size() == 2);
+  TracedHits equal = no_hits(n), guided = no_hits(n, 2);
   RadiosityMap sent = empty_radiosity_map(32);
   fill_radiosity(sent, room->map, room->elements, equal, {}, some);
   const std::vector<Rgb> a = light_of(*room, sent, equal, {512});
-  light_of(*room, sent, guided, {32});
+  light_of(*room, sent, guided, {32}, &*layers);
   for (uint64_t g = 0; g < 20; ++g) {
     std::array<float, kCells> deviations;
     for (size_t c = 0; c < kCells; ++c) deviations[c] = std::exp2(float(hash64(g, c) % 6));
@@ -118,7 +122,7 @@ TEST(GuidedRays, BringTheSameLight) {
   }
   for (uint32_t i = 0; i < n; ++i) guided.guide.of_element.push_back(i % 20);
   for (size_t i = 0; i < n; ++i) begin_guided(guided, i, 1 + int(i % kGuideLevels));
-  const std::vector<Rgb> b = light_of(*room, sent, guided, {64, 128});
+  const std::vector<Rgb> b = light_of(*room, sent, guided, {64, 128}, &*layers);
   double mean = 0, difference = 0, squares = 0;
   for (size_t i = 0; i < n; ++i) {
     const double d = double(luminance(b[i] - a[i]));
@@ -126,6 +130,11 @@ TEST(GuidedRays, BringTheSameLight) {
   }
   EXPECT_LT(std::abs(difference), 4 * std::sqrt(squares)) << "four standard errors";
   EXPECT_LT(std::sqrt(squares / double(n)), 0.05 * mean / double(n)) << "else that tells nothing";
+  for (size_t i = 0; i < n; ++i) {
+    const float all = luminance(guided.sky[i]);
+    EXPECT_NEAR(luminance(guided.sky_by_layer[2 * i] + guided.sky_by_layer[2 * i + 1]), all,
+                1e-5f * all);
+  }
 }
 
 }  // namespace

@@ -23,13 +23,15 @@ float rays_per_sample(const TracedHits& hits, size_t element) {
 }
 
 void begin_guided(TracedHits& hits, size_t element, int level) {
-  LUXEL_CHECK(hits.sky_by_layer.empty() && hits.guide.of_element[element] != kNoGuide);
+  LUXEL_CHECK(hits.guide.of_element[element] != kNoGuide);
   LUXEL_CHECK(level >= 1 && level <= kGuideLevels);
   hits.guided[element] = uint8_t(level);
   hits.first_round[element] = hits.last_round[element] = uint8_t(hits.rounds.size());
   hits.samples[element] = 0;
   hits.sky[element] = {};
   hits.sky_luminance2[element] = hits.sky_first_less_second[element] = 0;
+  const size_t layers = hits.sky_by_layer.size() / hits.size();
+  for (size_t l = 0; l < layers; ++l) hits.sky_by_layer[element * layers + l] = {};
 }
 
 TracedHits no_hits(size_t elements, size_t layers, std::shared_ptr<MappedMemory> memory) {

@@ -112,14 +112,14 @@ FollowedPath ended(const RayScene& in, const NearPath& path, TracedHits& out) {
   Rgb light = path.light;
   if (alive && !found) {
     const Rgb l = path.throughput * light::soft_radiance(in.scene, in.around, path.direction);
-    add_sky(in.near->layers, l, path.element, out);
+    add_sky(in.near->layers, l * weight_of(path), path.element, out);
     light += l;
   }
   const bool has_hit =
       found && (!path.hit.back_face ||
                 scene::reflects_from_behind(scene::material_at(in.scene, path.hit.point())));
   const FollowedWay way{path.is_plain, alive ? path.direction : Vec3{}, has_hit, path.second_half};
-  light = light * std::ldexp(1.0f, -int(path.doublings));
+  light = light * weight_of(path);
   FollowedPath end{path.element, path.ray, path.first_m, FollowedRay::pack(light, way), {}};
   if (!has_hit) return end;
   const uint32_t tint = pack_tint(path.throughput, hash64(path.seed, path.sample ^ 0x4e37u));

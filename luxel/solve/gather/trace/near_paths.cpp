@@ -39,12 +39,12 @@ uint64_t add_direct_light(const NearScene& in, NearBuffers& buffers) {
   light::direct_light_at({in.scene, in.lights, in.tracer}, {.samples = 1}, buffers.receivers,
                          buffers.batch, buffers.light);
   for (size_t i = 0; i < buffers.paths.size(); ++i) {
-    buffers.paths[i].light += buffers.paths[i].throughput * buffers.light[i].irradiance / kPi;
+    NearPath& path = buffers.paths[i];
+    path.light += path.throughput * buffers.light[i].irradiance / kPi;
     if (in.layers)
       light::add_light_by_layer(
-          buffers.batch, i, *in.layers, buffers.paths[i].throughput / kPi,
-          buffers.by_layer.subspan(buffers.paths[i].element * in.layers->size(),
-                                   in.layers->size()));
+          buffers.batch, i, *in.layers, path.throughput * (weight_of(path) / kPi),
+          buffers.by_layer.subspan(path.element * in.layers->size(), in.layers->size()));
   }
   return buffers.batch.rays.size();
 }

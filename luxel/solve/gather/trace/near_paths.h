@@ -9,6 +9,7 @@
 // place's own side. docs/method/gather.md
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,6 +42,8 @@ struct NearPath {
   float first_m = 0;
   bool is_plain = true;  ///< it met a front there, and has taken one step at most
 };
+/// The part of a sample that the path's ray is.
+inline float weight_of(const NearPath& path) { return std::ldexp(1.0f, -int(path.doublings)); }
 
 /// What paths look at.
 struct NearScene {
@@ -62,8 +65,8 @@ struct NearBuffers {
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;
   light::ShadowRayBatch batch;
-  /// With layers: the radiance that paths bring is added to these, too, layer by layer for each
-  /// element.
+  /// With layers: the radiance that paths bring, times their weights, is added to these, too, layer
+  /// by layer for each element.
   std::span<Rgb> by_layer;
 };
 

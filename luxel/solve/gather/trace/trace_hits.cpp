@@ -356,7 +356,7 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   LUXEL_CHECK(hits.rounds.size() < 256);
   LUXEL_CHECK(!params.team || !(params.keep || params.earlier || params.watch));
   LUXEL_CHECK(hits.rounds.empty() || hits.team == params.team);
-  LUXEL_CHECK(hits.guide.of_element.empty() || !(params.keep || params.earlier || params.layers));
+  LUXEL_CHECK(hits.guide.of_element.empty() || !(params.keep || params.earlier));
   LUXEL_CHECK(hits.sky_by_layer.size() ==
               elements.size() * (params.layers ? params.layers->size() : 0));
   // Hits of this round go to memory as far as those of the rounds before leave room.

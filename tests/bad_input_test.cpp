@@ -230,6 +230,7 @@ TEST(BadSettings, NameTheOptionAndTheValue) {
                                       {"--bounces x", "'x'"},
                                       {"--sun 10,95,1", "'10,95,1'"},
                                       {"--max-memory 0", "'0'"},
+                                      {"--max-memory 0.4", "'0.4'"},
                                       {"--direct-samples 0", "--direct-samples 0"},
                                       {"--supersample 0", "--supersample 0"},
                                       {"--threads -1", "--threads -1"},

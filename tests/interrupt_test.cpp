@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: the program ends within a second, with code 130, and leaves nothing.
+// Ctrl-C, SIGTERM and SIGHUP: the program ends within a second, with code 130, and leaves nothing.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ const std::vector<std::string> kManyRays{"--resolution",     "256", "--samples",
 
 // Supersampling is the last stage before them.
 TEST(InterruptSlow, WhileRaysAreTraced) {
-  for (const int signal : {SIGINT, SIGTERM})
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     expect_bake_stopped(after_stage("supersample"), signal, scene_file("cornell-box.glb"),
                         kManyRays);
 }
@@ -137,6 +137,38 @@ TEST(InterruptSlow, FilesOfAnEarlierBakeStay) {
                  box);
   EXPECT_EQ(slurp(s.path / "b/lightmap.exr"), before);
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
+}
+
+// A signal that is ignored when the program starts stays ignored, as SIGHUP under nohup.
+TEST(Interrupt, NotBySignalsThatAreIgnored) {
+  const ScratchFolder s;
+  const std::string output = (s.path / "b").string();
+  const CommandResult r = shell("trap '' HUP; " LUXEL_BINARY " bake " +
+                                scene_file("cornell-box.glb") + " -o " + output +
+                                " --resolution 64 --samples 64 & "
+                                "until test -d " +
+                                output + "; do sleep 0.01; done; kill -HUP $!; wait $!");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(files_in(output), kBakeFiles);
+}
+
+// Nobody reads what is said on the way.
+TEST(Interrupt, NotByAClosedPipe) {
+  const ScratchFolder s;
+  shell(LUXEL_BINARY " bake " + scene_file("cornell-box.glb") + " -o " + (s.path / "b").string() +
+        " --resolution 32 --samples 4 2>&1 | true");
+  EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
+}
+
+// Files may not be larger than 4 KB: that is a full disk, and leaves no folder.
+TEST(Interrupt, ByALimitOnTheSizeOfFiles) {
+  const ScratchFolder s;
+  const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") + " -o " +
+                                    (s.path / "b").string() + " --resolution 32 --samples 4",
+                                "ulimit -f 8;");
+  EXPECT_EQ(r.code, 3) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("File too large"));
+  EXPECT_TRUE(std::filesystem::is_empty(s.path));
 }
 
 }  // namespace

@@ -85,8 +85,11 @@ int code_after_output(int code, const Common& common);
 
 /// From here on an overflow of this thread's stack ends the process with a sentence and code 1:
 /// readers of other libraries call themselves for what lies in each other in a file. It is said as
-/// `messages` are wanted.
+/// `messages` are wanted. Another thread that finds that the stack has overflowed has half a second
+/// to clean up, and ends the process.
 void say_when_the_stack_overflows(const Common& messages);
+bool stack_has_overflowed();
+[[noreturn]] void end_after_overflow();
 
 /// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
 using Action = std::function<int()>;

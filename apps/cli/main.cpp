@@ -61,7 +61,7 @@ luxel::cli::Common messages_in(int argc, char** argv) {
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 done; 1 a file, a scene or a setting is wrong; 2 the command line is wrong;\n"
-    "3 not enough memory, disk or time; 130 stopped by Ctrl-C or SIGTERM.";
+    "3 not enough memory, disk or time; 130 stopped by Ctrl-C, SIGTERM or SIGHUP.";
 
 /// All commands. What was asked for goes to `action`.
 std::unique_ptr<CLI::App> make_app(luxel::cli::Action& action) {
@@ -181,6 +181,8 @@ int main(int argc, char** argv) {
   luxel::cli::say_when_the_stack_overflows(messages_in(argc, argv));
   // A limit on the size of files is an error of the write like any other.
   std::signal(SIGXFSZ, SIG_IGN);
+  // So is a pipe whose reader has gone: what is said on the way is lost, and files are written.
+  std::signal(SIGPIPE, SIG_IGN);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 
 #include "apps/cli/cli.h"
 #include "apps/cli/terminal.h"
+#include "luxel/base/file.h"
 #include "luxel/base/short_message.h"
 
 namespace luxel::cli {
@@ -114,7 +115,7 @@ int code_after_output(int code, const Common& common) {
   if ((flushed && !std::ferror(stdout)) || code != kDone) return code;
   // When an earlier write failed, the next one says why; one more line break does no harm then.
   if (flushed && ::write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
-  return report({error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
+  return report({code_of_write(error),
                  fmt::format("cannot write the results to standard output{}{}",
                              error != 0 ? ": " : "", error != 0 ? std::strerror(error) : "")},
                 {.progress_json = common.progress_json});

@@ -4,9 +4,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <string_view>
 
 #include "apps/cli/cli.h"
@@ -17,6 +19,8 @@ namespace {
 /// The end of the stack, towards which it grows. A kernel keeps 1 MiB free below it.
 uintptr_t end_of_stack = 0;
 bool json_wanted = false, events_wanted = false;
+std::atomic<bool> has_overflowed{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
 constexpr uintptr_t kNear = 2 << 20;
 
 void print(int stream, std::string_view text) {
@@ -25,13 +29,7 @@ void print(int stream, std::string_view text) {
 }
 
 /// Only functions that may be called in a signal's handler.
-[[maybe_unused]] void on_fault(int signal, siginfo_t* info, void*) {
-  const auto at = reinterpret_cast<uintptr_t>(info->si_addr);
-  if (at < end_of_stack - kNear || at > end_of_stack + kNear) {
-    // Another fault: the instruction runs again, and ends the process as it would have before.
-    std::signal(signal, SIG_DFL);
-    return;
-  }
+[[noreturn]] void say_and_end() {
 #define LUXEL_STACK_IS_FULL \
   "the stack is full; the parts of a file are nested too deeply, or in circles"
   print(STDERR_FILENO, events_wanted
@@ -45,7 +43,24 @@ void print(int stream, std::string_view text) {
   ::_exit(kBadInput);
 }
 
+/// Only functions that may be called in a signal's handler.
+[[maybe_unused]] void on_fault(int signal, siginfo_t* info, void*) {
+  const auto at = reinterpret_cast<uintptr_t>(info->si_addr);
+  if (at < end_of_stack - kNear || at > end_of_stack + kNear) {
+    // Another fault: the instruction runs again, and ends the process as it would have before.
+    std::signal(signal, SIG_DFL);
+    return;
+  }
+  has_overflowed = true;
+  timespec patience{0, 500'000'000};
+  while (::nanosleep(&patience, &patience) != 0) continue;
+  say_and_end();
+}
+
 }  // namespace
+
+bool stack_has_overflowed() { return has_overflowed; }
+void end_after_overflow() { say_and_end(); }
 
 void say_when_the_stack_overflows(const Common& messages) {
   json_wanted = messages.json, events_wanted = messages.progress_json;

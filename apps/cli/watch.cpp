@@ -13,6 +13,7 @@
 #include "apps/cli/terminal.h"
 #include "luxel/base/clock.h"
 #include "luxel/base/output_folder.h"
+#include "luxel/base/stop_signals.h"
 
 namespace luxel::cli {
 namespace {
@@ -181,15 +182,7 @@ class ProgressEvents {
   std::string way_on_;
 };
 
-sigset_t stop_signals() {
-  sigset_t stop;
-  sigemptyset(&stop);
-  sigaddset(&stop, SIGINT);
-  sigaddset(&stop, SIGTERM);
-  return stop;
-}
-
-/// Waits for Ctrl-C at most a tenth of a second. True when it came.
+/// Waits for one of stop_signals() at most a tenth of a second. True when it came.
 bool stop_requested() {
   const sigset_t stop = stop_signals();
   const timespec patience{0, 100'000'000};
@@ -203,6 +196,10 @@ template <class Shown>
 void watch(Progress& progress, const std::atomic<Work>& work, const Common& common, Shown line) {
   Clock::time_point asked{};
   while (work == Work::running) {
+    if (stack_has_overflowed()) {
+      progress.clean_up();
+      end_after_overflow();
+    }
     if (stop_requested()) {
       if (asked == Clock::time_point{}) asked = Clock::now();
       progress.request_cancel();
@@ -232,7 +229,7 @@ std::string clock_text(double seconds) {
 }
 
 Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work) {
-  // Only the watcher takes Ctrl-C; the threads that the work starts inherit this mask.
+  // Only the watcher takes these signals; the threads that the work starts inherit this mask.
   const sigset_t stop = stop_signals();
   pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   Progress progress;

@@ -20,9 +20,7 @@ inline namespace base {
 namespace {
 
 Failure write_error(const std::filesystem::path& path, int error) {
-  const bool full = error == ENOSPC || error == EDQUOT;
-  return fail(full ? ErrorCode::out_of_disk : ErrorCode::io, "cannot write {}: {}", path.string(),
-              std::strerror(error));
+  return fail(code_of_write(error), "cannot write {}: {}", path.string(), std::strerror(error));
 }
 
 /// Returns 0 or the errno of the first call that failed.
@@ -106,7 +104,9 @@ Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
                 path.string());
   TemporaryFile temporary;
   temporary.name = temporary_name(path, kPartial);
-  const int file = ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  // A link of that name would lead elsewhere.
+  const int file =
+      ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (file < 0) return write_error(path, errno);
   int error = write_all(file, bytes);
   if (::close(file) != 0 && error == 0) error = errno;
@@ -136,6 +136,11 @@ void bring_back(const std::filesystem::path& path, const TemporaryFile& old) {
 }
 
 }  // namespace
+
+ErrorCode code_of_write(int error) {
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  return full ? ErrorCode::out_of_disk : ErrorCode::io;
+}
 
 Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
   const auto error = [&](int number) {

@@ -21,6 +21,10 @@ struct OutputFile {
   std::vector<std::byte> bytes;
 };
 
+/// The code of a write that failed with this errno: out_of_disk where the disk, the user's part of
+/// it, or the size that a file may have (ulimit -f) is used up; otherwise io.
+ErrorCode code_of_write(int error);
+
 /// A file of text.
 OutputFile text_file(std::filesystem::path path, std::string_view text);
 

@@ -76,8 +76,8 @@ Status OutputFolder::make() {
   if (error || !fs::is_directory(folder_, error)) {
     std::error_code ignored;
     const bool in_the_way = !fs::is_directory(there, ignored);
-    return fail(error == std::errc::no_space_on_device ? ErrorCode::out_of_disk : ErrorCode::io,
-                "cannot make the output folder {}: {}", folder_.string(),
+    return fail(code_of_write(error.value()), "cannot make the output folder {}: {}",
+                folder_.string(),
                 in_the_way ? there.string() + " is a file; choose another name" : error.message());
   }
   return {};

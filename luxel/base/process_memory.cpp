@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <string>
 
@@ -25,6 +27,18 @@ ResidentPages resident_pages() {
 
 uint64_t page_bytes() { return uint64_t(::sysconf(_SC_PAGESIZE)); }
 
+/// The line `key` of a file of lines "key number kB"; 0: there is none.
+uint64_t stated_bytes(const char* file, const std::string& key) {
+  std::ifstream in(file);
+  std::string word, rest;
+  while (in >> word) {
+    uint64_t kilobytes = 0;
+    if (word == key && in >> kilobytes) return kilobytes * 1024;
+    std::getline(in, rest);
+  }
+  return 0;
+}
+
 }  // namespace
 
 uint64_t resident_bytes() { return resident_pages().all * page_bytes(); }
@@ -39,14 +53,47 @@ uint64_t peak_resident_bytes() {
 void return_free_memory() { ::malloc_trim(0); }
 
 uint64_t available_bytes() {
-  std::ifstream in("/proc/meminfo");
-  std::string key, unit;
-  uint64_t kilobytes = 0;
-  while (in >> key >> kilobytes) {
-    if (key == "MemAvailable:") return kilobytes * 1024;
-    std::getline(in, unit);
+  const uint64_t available = stated_bytes("/proc/meminfo", "MemAvailable:");
+  return available > 0 ? available : uint64_t(::sysconf(_SC_PHYS_PAGES)) * page_bytes();
+}
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kHasOwnMemory = false;
+#else
+constexpr bool kHasOwnMemory = true;
+#endif
+
+/// Taken while a MemoryLimit counts.
+std::atomic_flag& limit_is_taken() {
+  static constinit std::atomic_flag taken;
+  return taken;
+}
+
+}  // namespace
+
+MemoryLimit::MemoryLimit(uint64_t more_bytes) {
+  if (!kHasOwnMemory || limit_is_taken().test_and_set()) return;
+  rlimit limit{};
+  // What RLIMIT_DATA counts: private memory that may be written to, used or not.
+  const uint64_t held = stated_bytes("/proc/self/status", "VmData:");
+  if (held > 0 && ::getrlimit(RLIMIT_DATA, &limit) == 0) {
+    before_ = limit.rlim_cur;
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, held + more_bytes);
+    is_set_ = ::setrlimit(RLIMIT_DATA, &limit) == 0;
   }
-  return uint64_t(::sysconf(_SC_PHYS_PAGES)) * uint64_t(::sysconf(_SC_PAGESIZE));
+  if (!is_set_) limit_is_taken().clear();
+}
+
+MemoryLimit::~MemoryLimit() {
+  if (!is_set_) return;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_DATA, &limit) == 0) {
+    limit.rlim_cur = before_;
+    ::setrlimit(RLIMIT_DATA, &limit);
+  }
+  limit_is_taken().clear();
 }
 
 }  // namespace luxel

@@ -12,4 +12,19 @@ uint64_t available_bytes();      ///< what the machine can still give without sw
 /// Hands back what the allocator has kept of freed memory.
 void return_free_memory();
 
+/// While it lives, the process may take so many bytes more of memory of its own (RLIMIT_DATA): an
+/// allocation beyond them fails, in whichever library it is. Of several that live at a time, in
+/// threads, the first counts. Sanitizers map memory by themselves: with them it does nothing.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(uint64_t more_bytes);
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+  ~MemoryLimit();
+
+ private:
+  bool is_set_ = false;
+  uint64_t before_ = 0;
+};
+
 }  // namespace luxel

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "luxel/base/digest.h"
+#include "luxel/base/file.h"
 #include "luxel/base/transfer.h"
 
 namespace luxel {
@@ -47,9 +48,7 @@ Failure damaged(const std::filesystem::path& path, uint64_t at, fmt::format_stri
 }
 
 Failure io_error(const char* verb, const std::filesystem::path& path, int error) {
-  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-  return fail(full ? ErrorCode::out_of_disk : ErrorCode::io, "cannot {} {}: {}", verb,
-              path.string(), std::strerror(error));
+  return fail(code_of_write(error), "cannot {} {}: {}", verb, path.string(), std::strerror(error));
 }
 
 template <class T>
@@ -97,7 +96,9 @@ std::filesystem::path RecordFile::unfinished_name(const std::filesystem::path& p
 
 Result<RecordFile> RecordFile::create(const std::filesystem::path& path, std::string_view header) {
   const std::string unfinished = unfinished_name(path).string();
-  const int file = ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  // A link of that name would lead elsewhere.
+  const int file =
+      ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (file < 0) return io_error("write", path, errno);
   RecordFile out(path, file);
   FileStart start;
@@ -118,7 +119,7 @@ Result<RecordFile> RecordFile::create(const std::filesystem::path& path, std::st
 }
 
 Result<RecordFile> RecordFile::open(const std::filesystem::path& path, Check check) {
-  return open(path, O_RDWR, check);
+  return open(path, O_RDWR | O_NOFOLLOW, check);
 }
 
 Result<RecordFile> RecordFile::open_to_read(const std::filesystem::path& path, Check check) {
@@ -128,6 +129,10 @@ Result<RecordFile> RecordFile::open_to_read(const std::filesystem::path& path, C
 
 Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags, Check check) {
   const int file = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (file < 0 && errno == ELOOP)
+    return fail(ErrorCode::io,
+                "{} is a symbolic link, and the file that it names would grow; remove it",
+                path.string());
   if (file < 0) return io_error("open", path, errno);
   RecordFile out(path, file);
   struct stat about {};
@@ -137,7 +142,7 @@ Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags
   LUXEL_TRY_STATUS(out.read_header(uint64_t(about.st_size)));
   const Status read = out.read_records(uint64_t(about.st_size), check);
   // A network file system may show how long a file is before it shows what is in it.
-  if (flags != O_RDWR) return out;
+  if ((flags & O_ACCMODE) != O_RDWR) return out;
   LUXEL_TRY_STATUS(read);
   LUXEL_TRY_STATUS(out.cut_off(uint64_t(about.st_size)));
   return out;

@@ -41,8 +41,8 @@ class RecordFile {
     now,       ///< reads the file through
     when_read  ///< by read_whole()
   };
-  /// A cut-off record at the file's end is taken away. Errors: no such file, none of this kind,
-  /// damaged: the sentence names the byte.
+  /// A cut-off record at the file's end is taken away. Errors: no such file, a symbolic link, none
+  /// of this kind, damaged: the sentence names the byte.
   static Result<RecordFile> open(const std::filesystem::path& path, Check check = Check::now);
   /// One that others may be writing: as far as it is sound now, and left as it is. Nothing is
   /// appended to it. Errors: no such file, none of this kind, a damaged header.

@@ -164,6 +164,20 @@ TEST_F(RecordFiles, OfOthersAreRefused) {
   EXPECT_EQ(made.error().code, ErrorCode::io);
 }
 
+// A folder of another's may hold a link with the name of the file: nothing grows elsewhere.
+TEST_F(RecordFiles, AreNoSymbolicLinks) {
+  const Bytes before = three_records();
+  const fs::path elsewhere = folder_ / "elsewhere";
+  fs::rename(path_, elsewhere);
+  fs::create_symlink(elsewhere, path_);
+  const auto file = RecordFile::open(path_);
+  ASSERT_FALSE(file);
+  EXPECT_THAT(file.error().message, HasSubstr("is a symbolic link"));
+  fs::create_symlink(elsewhere, RecordFile::unfinished_name(path_));
+  EXPECT_FALSE(RecordFile::create(path_, kHeader));
+  EXPECT_EQ(*read_file(elsewhere), before);
+}
+
 TEST_F(RecordFiles, TakeRecordsFromManyThreads) {
   constexpr size_t kCount = 2000;
   {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "luxel/base/file.h"
 #include "luxel/base/transfer.h"
 
 namespace luxel {
@@ -42,7 +43,7 @@ Status ScratchFile::write(uint64_t offset, const void* bytes, size_t count) cons
   const int error =
       transfer_all(::pwrite, file_, static_cast<const char*>(bytes), count, off_t(offset));
   if (error == 0) return {};
-  return fail(error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
+  return fail(code_of_write(error),
               "cannot write temporary data to {}: {}; give more --max-memory or a folder with more "
               "room",
               folder_.string(), std::strerror(error));
@@ -59,7 +60,7 @@ Status ScratchFile::reserve(uint64_t bytes) const {
   int error = EINTR;
   while (error == EINTR) error = ::posix_fallocate(file_, 0, off_t(bytes));
   if (error == 0) return {};
-  return fail(error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
+  return fail(code_of_write(error),
               "cannot make a temporary file of {}M in {}: {}; give more --max-memory or a folder "
               "with more room",
               (bytes >> 20) + 1, folder_.string(), std::strerror(error));

@@ -6,12 +6,12 @@
 #include <mpi.h>
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "luxel/base/stop_signals.h"
 #include "luxel/cluster/mpi_team.h"
 #endif
 
@@ -34,12 +34,11 @@ std::string mpi_version() {
 
 namespace {
 
-/// Blocks SIGINT and SIGTERM while it lives, so that threads that are started do not take them.
+/// Blocks stop_signals() while it lives, so that threads that are started do not take them.
 class BlockedSignals {
  public:
   BlockedSignals() {
-    sigset_t stop;
-    sigemptyset(&stop), sigaddset(&stop, SIGINT), sigaddset(&stop, SIGTERM);
+    const sigset_t stop = stop_signals();
     pthread_sigmask(SIG_BLOCK, &stop, &before_);
   }
   BlockedSignals(const BlockedSignals&) = delete;

@@ -26,7 +26,7 @@ struct Joined {
 /// Joins all processes that were started together. `program` must be the same text for all. Of each
 /// node's processes `per_node` work, and the others lend them the cores that they may run on: the
 /// scene and its hierarchy are there once for each that works. Once per process, before any other
-/// thread is started; SIGINT and SIGTERM are blocked in the threads that this starts. Errors: luxel
+/// thread is started; stop_signals() are blocked in the threads that this starts. Errors: luxel
 /// was built without MPI or with another one, another process has another `program`, MPI's own.
 Result<Joined> join_processes(const std::string& program, int per_node);
 

@@ -140,7 +140,43 @@ uint64_t largest_ratio(Imf::Compression compression) {
   return dwa ? 1 << 14 : 1100;
 }
 
+/// The text that ends with a 0 byte at `at`, which moves on behind it; empty where the file ends.
+std::string_view text_at(std::span<const std::byte> bytes, size_t& at) {
+  const char* first = reinterpret_cast<const char*>(bytes.data()) + at;
+  const size_t length = ::strnlen(first, bytes.size() - at);
+  at = std::min(at + length + 1, bytes.size());
+  return {first, length};
+}
+
+/// OpenEXR makes room for as many bytes as an attribute of a header states before it reads them.
+Status check_attributes(std::span<const std::byte> bytes, std::string_view name) {
+  constexpr size_t kMagicAndVersion = 8, kSizeBytes = 4;
+  constexpr auto kParts = std::byte(0x10);  // in the second byte of the version
+  const bool has_parts = bytes.size() > 5 && (bytes[5] & kParts) != std::byte(0);
+  for (size_t at = kMagicAndVersion; at < bytes.size();) {
+    const std::string_view attribute = text_at(bytes, at);
+    if (attribute.empty()) {
+      // The headers of several parts follow each other, and a last name without letters.
+      if (!has_parts || at == bytes.size() || bytes[at] == std::byte(0)) break;
+      continue;
+    }
+    text_at(bytes, at);                         // its type
+    if (bytes.size() - at < kSizeBytes) break;  // OpenEXR says so
+    uint32_t size = 0;
+    for (size_t k = 0; k < kSizeBytes; ++k) size |= uint32_t(bytes[at + k]) << (8 * k);
+    at += kSizeBytes;
+    if (size > bytes.size() - at)
+      return fail(
+          ErrorCode::bad_input,
+          "{}: an attribute of the EXR file states {} bytes, and {} are left; save it again", name,
+          size, bytes.size() - at);
+    at += size;
+  }
+  return {};
+}
+
 Result<Image> read_exr(std::span<const std::byte> bytes, std::string_view name) {
+  LUXEL_TRY_STATUS(check_attributes(bytes, name));
   MemoryInput stream(bytes);
   Imf::InputFile file(stream);
   const Imath::Box2i window = file.header().dataWindow();

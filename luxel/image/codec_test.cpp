@@ -113,6 +113,14 @@ TEST(Exr, CorruptBytesNeverCrash) {
   }
 }
 
+// 22 bytes that would have 2 GB.
+TEST(Exr, AnAttributeLongerThanTheFileIsRefused) {
+  const std::string text("\x76\x2f\x31\x01\x02\0\0\0name\0type\0\xff\xff\xff\x7f", 22);
+  const auto image = decode_exr(std::as_bytes(std::span(text)), "bomb.exr");
+  ASSERT_FALSE(image);
+  EXPECT_THAT(image.error().message, testing::HasSubstr("states 2147483647 bytes, and 0 are left"));
+}
+
 // Memory for 8 million pixels would be 134 MB.
 TEST(Exr, MorePixelsThanTheBytesCanHoldAreRefusedBeforeMemoryIsTaken) {
   std::vector<std::byte> bytes = *encode_exr(Image(4, 4, 4));

@@ -1,14 +1,17 @@
 #include "luxel/import/environment.h"
 
-#include "luxel/base/file.h"
+#include <new>
+
+#include "luxel/base/process_memory.h"
 #include "luxel/image/codec.h"
+#include "luxel/import/reading_memory.h"
 
 namespace luxel::import {
 namespace {
 
-Result<image::Image> decode(const std::filesystem::path& file) {
+Result<image::Image> decode(const std::filesystem::path& file, ReadingMemory& memory) {
   const std::string extension = file.extension().string();
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_counted(file, memory));
   if (extension == ".hdr" || extension == ".HDR") return image::decode_hdr(bytes, file.string());
   if (extension == ".exr" || extension == ".EXR") return image::decode_exr(bytes, file.string());
   return fail(ErrorCode::bad_input,
@@ -46,9 +49,17 @@ Result<ImportedEnvironment> environment_from(const image::Image& picture, const 
 }
 
 Result<ImportedEnvironment> read_environment(const std::filesystem::path& file, float rotation_rad,
-                                             float scale) {
-  LUXEL_TRY(const image::Image picture, decode(file));
-  return environment_from(picture, file.string(), rotation_rad, scale);
+                                             float scale, uint64_t max_memory_bytes) {
+  ReadingMemory memory(max_memory_bytes);
+  const MemoryLimit limit(memory.left_bytes());
+  try {
+    const Result<image::Image> picture = decode(file, memory);
+    if (picture) return environment_from(*picture, file.string(), rotation_rad, scale);
+    if (says_no_memory(picture.error())) return memory.used_up(file.string());
+    return Failure{picture.error()};
+  } catch (const std::bad_alloc&) {
+    return memory.used_up(file.string());
+  }
 }
 
 }  // namespace luxel::import

@@ -19,9 +19,9 @@ struct ImportedEnvironment {
 
 /// An equirectangular .hdr or .exr picture, twice as wide as high, in linear light, times `scale`.
 /// Negative values, which some programs leave, become 0, with a warning. Errors: no such file,
-/// another format, another shape, a value that is not finite.
+/// another format, another shape, a value that is not finite; out_of_memory, as import_scene().
 Result<ImportedEnvironment> read_environment(const std::filesystem::path& file, float rotation_rad,
-                                             float scale);
+                                             float scale, uint64_t max_memory_bytes = 0);
 
 /// An environment from a picture in memory, which errors call `name`.
 Result<ImportedEnvironment> environment_from(const image::Image& picture, const std::string& name,

@@ -6,6 +6,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/process_memory.h"
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 #include "luxel/scene/sides.h"
@@ -89,26 +90,39 @@ void make_names_utf8(Imported& imported) {
   all(scene.lights), all(scene.cameras);
 }
 
+/// A file can be wrong in any number of places. So many of them are told.
+constexpr size_t kMostWarnings = 100;
+void cut(std::vector<std::string>& warnings, const std::string& file) {
+  if (warnings.size() <= kMostWarnings) return;
+  const size_t more = warnings.size() - kMostWarnings;
+  warnings.resize(kMostWarnings);
+  warnings.push_back(fmt::format("{}: {} more warnings are left out", file, more));
+}
+
 Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
   LUXEL_TRY_STATUS(check_extension(source));
   LUXEL_TRY(source.world_from_file, world_from_file(source, params));
   source.smooths_by_groups = !params.smooth_normals_deg;
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
-  // Third-party readers throw; nothing of it leaves this room.
+  // Third-party readers throw; nothing of it leaves this room. Some say by their own words that
+  // there was no memory.
   try {
-    LUXEL_TRY(Imported imported, read_scene(source, params));
+    Result<Imported> read = read_scene(source, params);
+    if (!read && says_no_memory(read.error())) return source.memory.used_up(source.name);
+    LUXEL_TRY(Imported imported, std::move(read));
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
     make_names_utf8(imported);
-    const std::vector<scene::Instance> read = imported.scene.instances;
+    const std::vector<scene::Instance> instances = imported.scene.instances;
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
-    keep_nodes(read, imported);
+    keep_nodes(instances, imported);
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
+    cut(imported.warnings, source.name);
     const float crease_rad = crease_deg(source, imported, params) * kPi / 180;
     for (scene::Mesh& mesh : imported.scene.meshes) scene::smooth_normals(mesh, crease_rad);
     scene::link_sides(imported.scene);
     return imported;
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::out_of_memory, "{}: not enough memory to read it", source.name);
+    return source.memory.used_up(source.name);
   } catch (const std::exception& e) {
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(e.what()));
@@ -120,6 +134,7 @@ Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params,
                               uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
+  const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY(std::vector<std::byte> bytes, read_counted(path, memory));
   return read_checked({path,
                        path.string(),
@@ -133,6 +148,7 @@ Result<Imported> import_scene(const std::filesystem::path& path, const ImportPar
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
                               uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
+  const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY_STATUS(memory.take(bytes.size(), name));
   const std::string extension = lower_case(std::filesystem::path(name).extension().string());
   return read_checked({name, name, extension, {}, memory, std::move(bytes)}, {});
@@ -141,6 +157,7 @@ Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& n
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
                             const ImportParams& params) {
   ReadingMemory memory(0);
+  const MemoryLimit limit(memory.left_bytes());
   return read_checked({name, name, ".glb", {}, memory, std::move(bytes)}, params);
 }
 

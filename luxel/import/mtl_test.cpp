@@ -90,5 +90,16 @@ TEST(Mtl, OneLineMayNameSeveralLibraries) {
   EXPECT_EQ(color("a b.mtl"), 0.125f) << "a name with a blank comes first";
 }
 
+// 20,000 lines that name files which are not there would be 3.5 MB of warnings.
+TEST(Mtl, OfManyMissingLibrariesSomeAreNamed) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text += "mtllib m" + std::to_string(i) + ".mtl\n";
+  const auto imported = import_scene(folder.write("a.obj", text + kTriangle));
+  ASSERT_TRUE(imported) << imported.error().message;
+  ASSERT_EQ(imported->warnings.size(), 101u);
+  EXPECT_THAT(imported->warnings.back(), testing::HasSubstr("more warnings are left out"));
+}
+
 }  // namespace
 }  // namespace luxel::import

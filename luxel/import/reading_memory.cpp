@@ -6,24 +6,42 @@
 #include "luxel/base/process_memory.h"
 
 namespace luxel::import {
+namespace {
+
+constexpr double kMiB = 1024 * 1024;
+
+}  // namespace
 
 ReadingMemory::ReadingMemory(uint64_t max_bytes) : max_bytes_(max_bytes) {
   constexpr uint64_t kLeast = 64 * 1024 * 1024;
   const uint64_t held = resident_bytes();
   left_bytes_ = max_bytes == 0 ? available_bytes() : std::max(max_bytes, held) - held;
-  left_bytes_ = std::max(left_bytes_, kLeast);
+  left_bytes_ = first_bytes_ = std::max(left_bytes_, kLeast);
 }
 
 Status ReadingMemory::take(uint64_t bytes, std::string_view what) {
-  constexpr double kMiB = 1024 * 1024;
   if (bytes > left_bytes_)
     return fail(ErrorCode::out_of_memory, "{} needs {:.1f} MiB, and {:.1f} MiB are {}; {}", what,
-                double(bytes) / kMiB, double(left_bytes_) / kMiB,
-                max_bytes_ == 0 ? "free" : "left of --max-memory",
-                max_bytes_ == 0 ? "use smaller pictures or fewer triangles, or a larger machine"
-                                : "raise it, or use smaller pictures or fewer triangles");
+                double(bytes) / kMiB, double(left_bytes_) / kMiB, where_from(), remedy());
   left_bytes_ -= bytes;
   return {};
+}
+
+Failure ReadingMemory::used_up(std::string_view what) const {
+  return fail(ErrorCode::out_of_memory, "{} needs more than the {:.1f} MiB that are {}; {}", what,
+              double(first_bytes_) / kMiB, where_from(), remedy());
+}
+
+const char* ReadingMemory::where_from() const {
+  return max_bytes_ == 0 ? "free" : "left of --max-memory";
+}
+const char* ReadingMemory::remedy() const {
+  return max_bytes_ == 0 ? "use smaller pictures or fewer triangles, or a larger machine"
+                         : "raise it, or use smaller pictures or fewer triangles";
+}
+
+bool says_no_memory(const Error& error) {
+  return error.message.find("bad_alloc") != std::string::npos;
 }
 
 Result<std::vector<std::byte>> read_counted(const std::filesystem::path& file,

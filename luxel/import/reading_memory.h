@@ -22,10 +22,19 @@ class ReadingMemory {
 
   /// Takes `bytes` for `what`, which the message names. Errors: out_of_memory.
   Status take(uint64_t bytes, std::string_view what);
+  uint64_t left_bytes() const { return left_bytes_; }
+  /// The error where `what` has asked for more than there was, without saying so before.
+  Failure used_up(std::string_view what) const;
 
  private:
-  uint64_t left_bytes_ = 0, max_bytes_ = 0;
+  const char* where_from() const;
+  const char* remedy() const;
+
+  uint64_t left_bytes_ = 0, first_bytes_ = 0, max_bytes_ = 0;
 };
+
+/// Whether a library says by words of its own that an allocation failed.
+bool says_no_memory(const Error& error);
 
 /// The bytes of a file, taken off `memory` first. Errors: those of read_file() and of take().
 Result<std::vector<std::byte>> read_counted(const std::filesystem::path& file,

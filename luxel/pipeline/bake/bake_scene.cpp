@@ -344,7 +344,8 @@ Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::s
   return_free_memory();  // of documents and files: many small ones
   warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));
+            add_outside_light(settings.outside, imported.scene, imported.about_lost_lights,
+                              settings.max_memory_bytes));
   warnings.insert(warnings.end(), light.begin(), light.end());
   LUXEL_TRY_STATUS(stopped(progress));
   return std::move(imported.scene);

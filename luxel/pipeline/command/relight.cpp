@@ -286,7 +286,7 @@ Result<nlohmann::json> relight_alone_or_together(const RelightSettings& s, Team*
             import::import_scene(s.scene, s.reading, s.max_memory_bytes));
   // A scene without light is no mistake here: its lights come later.
   if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
-    LUXEL_TRY_STATUS(add_outside_light(s.outside, imported.scene));
+    LUXEL_TRY_STATUS(add_outside_light(s.outside, imported.scene, {}, s.max_memory_bytes));
   LUXEL_TRY_STATUS(check_same_work(team, imported.scene, digest_of_settings(s), progress));
   LUXEL_TRY(Relightable made, make_relightable(std::move(imported.scene), s, progress, team));
   made.warnings.insert(made.warnings.begin(), imported.warnings.begin(), imported.warnings.end());

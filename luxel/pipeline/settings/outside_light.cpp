@@ -214,11 +214,13 @@ scene::PunctualLight sun_light(const Sun& sun) {
 }
 
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, scene::Scene& scene,
-                                                   std::string_view about_lost_lights) {
+                                                   std::string_view about_lost_lights,
+                                                   uint64_t max_memory_bytes) {
   LUXEL_TRY(std::vector<std::string> warnings, add_profiles(outside.ies, scene));
   if (const auto& e = outside.environment) {
-    LUXEL_TRY(import::ImportedEnvironment imported,
-              import::read_environment(e->file, e->rotation_deg * kPi / 180, e->scale));
+    LUXEL_TRY(
+        import::ImportedEnvironment imported,
+        import::read_environment(e->file, e->rotation_deg * kPi / 180, e->scale, max_memory_bytes));
     scene.environment = std::move(imported.map);
     scene.background = {};
     warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());

@@ -61,9 +61,11 @@ inline constexpr SkySetting kDefaultSky{.azimuth_deg = 135, .elevation_deg = 40}
 /// then has no light at all gets kDefaultSky, and so does one in which only surfaces emit, and too
 /// faintly (about_faint_emission), where no option chose light from outside. Returns warnings; the
 /// one that says so comes last, and where there was no light it ends in `about_lost_lights`
-/// (import::Imported). Errors: those of import::read_environment and add_profiles.
+/// (import::Imported). `max_memory_bytes`: as in import::import_scene. Errors: those of
+/// import::read_environment and add_profiles.
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, scene::Scene& scene,
-                                                   std::string_view about_lost_lights = {});
+                                                   std::string_view about_lost_lights = {},
+                                                   uint64_t max_memory_bytes = 0);
 
 /// Whether add_outside_light() had to bring kDefaultSky: no file brings surroundings of its own.
 bool is_lit_by_default_day(const OutsideLight& outside, const scene::Scene& scene);

@@ -185,7 +185,7 @@ Result<uint64_t> parse_size(std::string_view text) {
     number.remove_suffix(1);
   }
   const auto value = number_from<double>(number);
-  if (!value || *value <= 0 || *value * unit > 1e18)
+  if (!value || *value * unit < 1 || *value * unit > 1e18)
     return fail(ErrorCode::bad_setting,
                 "--max-memory '{}' is not a size; give bytes, or 900M, 1.5G", text);
   return uint64_t(*value * unit);

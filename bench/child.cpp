@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/bake/bake.h"
 
 namespace luxel::bench {
@@ -45,7 +46,7 @@ Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
   LUXEL_TRY(const ChildOutcome child, run_in_child([&] {
               Progress progress;
               const auto json = pipeline::bake(settings, progress);
-              return json ? json->dump() : nlohmann::json(json.error().message).dump();
+              return json ? json_text(*json) : json_text(nlohmann::json(json.error().message));
             }));
   const auto json = nlohmann::json::parse(child.text, nullptr, false);
   if (!json.is_object())

@@ -282,6 +282,8 @@ TEST(View, SaysWhatIsWrong) {
   EXPECT_THAT(error("bake --screenshot x.png", 2), HasSubstr("needs --offscreen or --play"));
   EXPECT_THAT(error("bake --size 10 " + shot, 1), HasSubstr("--size '10' is not WIDTHxHEIGHT"));
   EXPECT_THAT(error("bake --size 99999x1 " + shot, 1), HasSubstr("each up to 16384"));
+  EXPECT_THAT(error("bake --size '1\nluxel-view: done\x1b[2J'" + shot, 1),
+              HasSubstr("'1\\nluxel-view: done\\x1b[2J'"));
   EXPECT_THAT(error("bake --offscreen --screenshot /nowhere/x.png", 1), HasSubstr("/nowhere"));
   // Drivers that are not there are no device.
   EXPECT_THAT(error("bake" + shot, 1, "VK_DRIVER_FILES=/absent VK_ICD_FILENAMES=/absent"),

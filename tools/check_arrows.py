@@ -6,7 +6,8 @@
 
 The rule: a room includes itself, base, the rooms of its row, and what those may include in turn;
 its CMakeLists.txt links only rooms of its row. Rooms lie in luxel/, but for the programs and bench.
-Folders within a room do not include one another in circles.
+Folders within a room do not include one another in circles. Programs print in their print.cpp alone, and JSON becomes
+text in luxel/base/shown_text.h alone.
 """
 import pathlib
 import re
@@ -18,6 +19,13 @@ PROGRAMS = ("apps", "bindings", "examples")  # may print and exit; nothing inclu
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
                    r"(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|quick_exit|abort)\s*\(")
+# What a file or a user gave reaches a terminal or JSON through one function of luxel/base/shown_text.h.
+PRINT_APPS = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
+                        r"(printf|fprintf|vprintf|puts|fputs|putchar|fwrite|perror)\s*\(|\bfmt::print\b")
+PRINT_APPS_ONLY = {"apps/cli/print.cpp", "apps/view/print.cpp"}
+JSON_TEXT = re.compile(r"(\.|->)dump\s*\(")
+JSON_TEXT_EXCEPT = "luxel/base/shown_text.h"
+JSON_READERS = "import"  # the room dumps only what it has parsed, which is valid
 PRINT_EXCEPT = {"luxel/base/check.cpp",  # says which contract broke, then aborts
                 "bench/child.cpp"}  # ends the child process that it forked to measure
 TBB_ONLY = {"luxel/base/parallel.h", "luxel/base/parallel.cpp"}
@@ -109,6 +117,21 @@ def include_faults(table, path, room, code):
             yield f"{where}: {room} may not include {target} (table of rooms in ARCHITECTURE.md)"
 
 
+def shown_faults(path, room, code):
+    """Text of files and users that goes past luxel/base/shown_text.h."""
+    if room in OUTSIDE or path.endswith("_test.cpp") or "/test_" in path or "_test_" in path:
+        return
+    code = without_comments_and_strings(code)
+    kinds = []
+    if room.startswith("apps") and path not in PRINT_APPS_ONLY:
+        kinds.append((PRINT_APPS, "prints; only print.cpp may (use print_line)"))
+    if path != JSON_TEXT_EXCEPT and room != JSON_READERS:
+        kinds.append((JSON_TEXT, "dumps JSON, which throws where a name is no UTF-8; use json_text()"))
+    for pattern, what in kinds:
+        for match in pattern.finditer(code):
+            yield f"{path}:{code.count(chr(10), 0, match.start()) + 1}: {what}"
+
+
 def print_faults(path, room, code):
     if room.startswith(PROGRAMS) or room in OUTSIDE or path in PRINT_EXCEPT or path.endswith("_test.cpp"):
         return
@@ -178,6 +201,7 @@ def faults(root):
         code = file.read_text()
         yield from include_faults(table, path, room, code)
         yield from print_faults(path, room, code)
+        yield from shown_faults(path, room, code)
         if room in table.direct and not path.endswith("_test.cpp") and "_test_" not in path:
             for match in INCLUDE.finditer(code):
                 if match.group(1) == '"' and table.room_of(match.group(2)) == room:
@@ -209,7 +233,9 @@ GOOD = {
     "luxel/pipeline/high/h.h": '#include "luxel/pipeline/low/l.h"',
     "luxel/pipeline/low/l.h": "",
     "apps/cli/CMakeLists.txt": "add_executable(luxel main.cpp)",
-    "apps/cli/main.cpp": '#include "luxel/pipeline/p.h"\n#include "luxel/base/vec.h"\nint main() { std::exit(printf("")); }',
+    "apps/cli/main.cpp": '#include "luxel/pipeline/p.h"\n#include "luxel/base/vec.h"\nint main() { std::exit(1); }',
+    "apps/cli/print.cpp": "void print_line() { std::fwrite(1); }",
+    "luxel/base/shown_text.h": "json.dump(1);",
     "examples/e/CMakeLists.txt": "add_executable(example main.cpp)",
     "examples/e/main.cpp": '#include "luxel/solve/a/a.h"\nint main() { std::printf("x"); }',
     "tests/agree_test.cpp": '#include "luxel/solve/a/a.h"\n#include "luxel/solve/b/b.h"',
@@ -231,6 +257,8 @@ BAD = [
     ("luxel/scene/s.cpp", 'std::printf("x");', "prints or exits"),
     ("luxel/scene/s.cpp", "std::exit(1);", "prints or exits"),
     ("luxel/pipeline/low/l.h", '#include "luxel/pipeline/high/h.h"', "within pipeline, high includes low"),
+    ("apps/cli/a.cpp", 'std::fputs(name, stderr);', "only print.cpp may"),
+    ("luxel/scene/s.cpp", "json.dump(2);", "use json_text()"),
     ("luxel/attic/a.cpp", "", "lies in no room"),
     ("luxel/attic/CMakeLists.txt", "luxel_room(attic USES base)", "room attic has no row"),
     ("luxel/scene/CMakeLists.txt", "luxel_room(scene\n USES base transport\n LIBS a)", "scene links transport"),

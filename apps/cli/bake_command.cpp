@@ -1,8 +1,7 @@
-#include <cstdio>
-
 #include "apps/cli/bake_summary.h"
 #include "apps/cli/cli.h"
 #include "apps/cli/device_option.h"
+#include "apps/cli/print.h"
 #include "apps/cli/together.h"
 #include "luxel/arguments/bake_options.h"
 #include "luxel/arguments/option_file.h"
@@ -25,28 +24,25 @@ struct BakeOptions {
 void print_part(const nlohmann::json& part) {
   const int number = part["number"].get<int>(), of = part["of"].get<int>();
   const auto file = part["file"].get<std::string>();
-  std::fprintf(stderr, "%s\n",
-               fmt::format("part {} of {}: added {} pieces of work to {}; the next stages need {} "
-                           "pieces from other parts; luxel merge finishes the bake",
-                           number, of, part["parts_kept"].get<uint64_t>(), file,
-                           part["parts_left"].get<uint64_t>())
-                   .c_str());
+  print_line(stderr,
+             fmt::format("part {} of {}: added {} pieces of work to {}; the next stages need {} "
+                         "pieces from other parts; luxel merge finishes the bake",
+                         number, of, part["parts_kept"].get<uint64_t>(), file,
+                         part["parts_left"].get<uint64_t>()));
 }
 
 void print_plan(const nlohmann::json& json) {
-  std::fprintf(
-      stderr, "%s\n",
-      fmt::format("plan: about {}, {:.0f}M of memory{}, {:.0f} million rays, for {} texels "
-                  "on {} x {}; nothing was baked",
-                  clock_text(json["seconds"]["total"].get<double>()),
-                  json["memory_bytes"].get<double>() / double(1u << 20),
-                  json["scratch_bytes"].get<double>() > 0
-                      ? fmt::format(" and {:.0f}M of temporary files",
-                                    json["scratch_bytes"].get<double>() / double(1u << 20))
-                      : std::string(),
-                  json["rays"].get<double>() * 1e-6, json["texels"].get<uint64_t>(),
-                  json["resolution"].get<int>(), json["resolution"].get<int>())
-          .c_str());
+  print_line(stderr,
+             fmt::format("plan: about {}, {:.0f}M of memory{}, {:.0f} million rays, for {} texels "
+                         "on {} x {}; nothing was baked",
+                         clock_text(json["seconds"]["total"].get<double>()),
+                         json["memory_bytes"].get<double>() / double(1u << 20),
+                         json["scratch_bytes"].get<double>() > 0
+                             ? fmt::format(" and {:.0f}M of temporary files",
+                                           json["scratch_bytes"].get<double>() / double(1u << 20))
+                             : std::string(),
+                         json["rays"].get<double>() * 1e-6, json["texels"].get<uint64_t>(),
+                         json["resolution"].get<int>(), json["resolution"].get<int>()));
 }
 
 int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings) {

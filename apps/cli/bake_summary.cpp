@@ -1,8 +1,9 @@
 #include "apps/cli/bake_summary.h"
 
 #include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "apps/cli/print.h"
 
 namespace luxel::cli {
 namespace {
@@ -57,20 +58,19 @@ std::string triangles_text(const nlohmann::json& counts) {
 void print_bake(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   const auto& counts = json["counts"];
   const size_t pages = json["atlas"]["pages"].size();
-  std::fprintf(
-      stderr, "%s\n",
+  print_line(
+      stderr,
       fmt::format("{}, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s{}",
                   triangles_text(counts), counts["charts"].get<uint64_t>(),
                   pages == 1 ? "" : fmt::format("{} pages of up to ", pages),
                   json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
                   json["seconds"]["total"].get<double>(),
-                  json["device"] == "cpu" ? "" : ", with " + json["device"].get<std::string>())
-          .c_str());
+                  json["device"] == "cpu" ? "" : ", with " + json["device"].get<std::string>()));
   if (const std::string error = error_text(settings, json); !error.empty())
-    std::fprintf(stderr, "%s\n", error.c_str());
+    print_line(stderr, error);
   for (const nlohmann::json& name : json["files"])
-    std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());
+    print_line(stderr, "wrote " + (settings.output / name.get<std::string>()).string());
 }
 
 }  // namespace luxel::cli

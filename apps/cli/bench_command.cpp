@@ -2,12 +2,12 @@
 // writes the pages. The folder bench/ has the measurements.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <span>
 #include <vector>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "bench/bench.h"
 #include "bench/gallery.h"
 #include "bench/growth.h"
@@ -100,9 +100,9 @@ int write_page(const BenchPage& which, const BenchOptions& options,
   });
   if (!done) return report(done.error(), options.common);
   if (options.common.json)
-    std::printf("%s\n", page.json.dump(2).c_str());
+    print_json(stdout, page.json);
   else if (!options.common.quiet)
-    std::printf("wrote %s\n", file.c_str());
+    print_line(stdout, "wrote " + file.string());
   return kDone;
 }
 
@@ -130,10 +130,11 @@ int run_page(const BenchOptions& options, const std::string& name,
   });
   if (!done) return report(done.error(), options.common);
   if (options.common.json) {
-    std::printf("%s\n", page.json.dump(2).c_str());
+    print_json(stdout, page.json);
     return kDone;
   }
-  for (const bench::Table& table : page.tables) std::printf("%s\n", bench::markdown(table).c_str());
+  for (const bench::Table& table : page.tables)
+    print_own(stdout, (bench::markdown(table) + "\n").c_str());
   return kDone;
 }
 
@@ -163,8 +164,10 @@ int run_stated(const BenchOptions& options) {
     return {};
   });
   if (!done) return report(done.error(), options.common);
-  std::printf("%s\n", options.common.json ? section.json.dump(2).c_str()
-                                          : bench::wrapped(section.markdown).c_str());
+  if (options.common.json)
+    print_json(stdout, section.json);
+  else
+    print_own(stdout, (bench::wrapped(section.markdown) + "\n").c_str());
   return kDone;
 }
 
@@ -176,9 +179,9 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
                            : table_of.run_in(shared, options.scene, options.common.threads);
     if (!table) return report(table.error(), options.common);
     if (options.common.json)
-      std::printf("%s\n", table->json.dump(2).c_str());
+      print_json(stdout, table->json);
     else
-      std::printf("%s\n", bench::markdown(*table).c_str());
+      print_own(stdout, (bench::markdown(*table) + "\n").c_str());
   }
   return kDone;
 }

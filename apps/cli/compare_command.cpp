@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/compare.h"
 
@@ -19,24 +19,25 @@ struct CompareOptions {
 void print_table(const pipeline::Compared& c) {
   const image::Difference& d = c.difference;
   const auto line = [](const char* name, double value, const char* unit) {
-    std::printf("%-22s %12.6g%s\n", name, value, unit);
+    print_line(stdout, fmt::format("{:22} {:>12.6g}{}", name, value, unit));
   };
-  std::printf("%-22s %12llu\n", "pixels compared", static_cast<unsigned long long>(d.texels));
+  print_line(stdout, fmt::format("{:22} {:12}", "pixels compared", d.texels));
   line("mean of B", d.mean, "");
   line("RMSE", d.rmse, "");
   line("RMSE / mean", 100 * d.rmse_over_mean, " %");
   line("relative RMSE", 100 * d.relative_rmse, " %");
   line("relative error, p95", 100 * c.relative_p95, " %");
   line("mean |A - B|", d.mean_abs, "");
-  std::printf("%-22s %12.6g at (%d, %d)\n", "largest |A - B|", d.max_abs, d.max_at[0], d.max_at[1]);
+  print_line(stdout, fmt::format("{:22} {:>12.6g} at ({}, {})", "largest |A - B|", d.max_abs,
+                                 d.max_at[0], d.max_at[1]));
   line("bias", d.bias, "");
   line("bias / mean", 100 * d.bias_over_mean, " %");
   line("PSNR", c.psnr_db, " dB");
   line(c.hdr ? "HDR-FLIP" : "FLIP", c.flip, "");
   line("FLIP, p95", c.flip_p95, "");
   for (size_t k = 0; k < c.share_above.size(); ++k)
-    std::printf("pixels above %2d of 255 %12.6g %%\n", image::kDifferenceLevels[k],
-                100 * c.share_above[k]);
+    print_line(stdout, fmt::format("pixels above {:2} of 255 {:>12.6g} %",
+                                   image::kDifferenceLevels[k], 100 * c.share_above[k]));
 }
 
 /// The limits that were given, in the order of limited_measures().
@@ -77,15 +78,15 @@ int run_compare(const CompareOptions& options) {
   if (!done) return report(done.error(), options.common);
   print_warnings(compared.warnings, options.common);
   if (options.common.json)
-    std::printf("%s\n", json_of(compared, limits).dump(2).c_str());
+    print_json(stdout, json_of(compared, limits));
   else if (!options.common.quiet)
     print_table(compared);
   if (!compared.report.empty() && !options.common.quiet)
-    std::fprintf(stderr, "wrote %s\n", compared.report.c_str());
+    print_line(stderr, "wrote " + compared.report.string());
   // The last word: also when nothing else is printed.
   const std::string verdict = pipeline::verdict(compared, limits);
   if (!options.common.json && (options.common.quiet || !limits.empty()))
-    std::printf("%s\n", verdict.c_str());
+    print_line(stdout, verdict);
   const bool passed = std::all_of(limits.begin(), limits.end(), [&](const pipeline::Limit& limit) {
     return pipeline::holds(limit, compared);
   });

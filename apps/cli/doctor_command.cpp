@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
 #include "apps/cli/cli.h"
 #include "apps/cli/machine.h"
+#include "apps/cli/print.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/cluster/mpi.h"
@@ -163,14 +163,10 @@ int run_doctor(const Common& common) {
     json.push_back(
         {{"about", f.about}, {"state", name_of(f.state)}, {"text", f.text}, {"advice", f.advice}});
     if (!common.json)
-      std::printf("%-8s %-16s %s%s\n", name_of(f.state), f.about.c_str(), f.text.c_str(),
-                  f.advice.empty() ? "" : ("; " + f.advice).c_str());
+      print_line(stdout, fmt::format("{:8} {:16} {}{}{}", name_of(f.state), f.about, f.text,
+                                     f.advice.empty() ? "" : "; ", f.advice));
   }
-  if (common.json)
-    // What is not UTF-8 may stand in a folder's name.
-    std::printf("%s\n", nlohmann::json{{"findings", json}, {"bakes", is_well}}
-                            .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                            .c_str());
+  if (common.json) print_json(stdout, {{"findings", json}, {"bakes", is_well}});
   return is_well ? kDone : kBadInput;
 }
 

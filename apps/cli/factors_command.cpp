@@ -1,8 +1,8 @@
-#include <cstdio>
-
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "apps/cli/together.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/command/factors.h"
 #include "luxel/pipeline/settings/settings.h"
 
@@ -49,29 +49,35 @@ nlohmann::json report_json(const pipeline::FactorSettings& s, const pipeline::Fa
 }
 
 void print_surfaces(const pipeline::FactorReport& r) {
+  std::vector<std::string> names;
   size_t width = 7;
-  for (const std::string& name : r.matrix.names) width = std::max(width, name.size());
-  std::printf("%-*s  %12s  %10s  %10s\n", int(width), "surface", "area [m^2]", "row sum",
-              "escapes");
+  for (const std::string& name : r.matrix.names)
+    width = std::max(width, names.emplace_back(short_message(name)).size());
+  print_line(stdout, fmt::format("{:{}}  {:>12}  {:>10}  {:>10}", "surface", width, "area [m^2]",
+                                 "row sum", "escapes"));
   for (size_t i = 0; i < r.matrix.size(); ++i)
     if (r.selection.from == scene::kNone || r.selection.from == i)
-      std::printf("%-*s  %12.6g  %10.7f  %10.7f\n", int(width), r.matrix.names[i].c_str(),
-                  r.matrix.area_m2[i], r.checks.row_sum[i], 1 - r.checks.row_sum[i]);
+      print_line(stdout,
+                 fmt::format("{:{}}  {:>12.6g}  {:>10.7f}  {:>10.7f}", names[i], width,
+                             r.matrix.area_m2[i], r.checks.row_sum[i], 1 - r.checks.row_sum[i]));
 }
 
 void print_report(const pipeline::FactorReport& r) {
   if (has_whole_rows(r)) print_surfaces(r);
   if (r.selection.from != scene::kNone && r.selection.to != scene::kNone)
-    std::printf("F(%s -> %s) = %.12g\n", r.matrix.names[r.selection.from].c_str(),
-                r.matrix.names[r.selection.to].c_str(),
-                r.matrix.at(r.selection.from, r.selection.to));
-  std::printf("largest estimated error of a factor: %.1e\n", r.largest_error);
+    print_line(stdout, fmt::format("F({} -> {}) = {:.12g}", r.matrix.names[r.selection.from],
+                                   r.matrix.names[r.selection.to],
+                                   r.matrix.at(r.selection.from, r.selection.to)));
+  print_line(stdout, fmt::format("largest estimated error of a factor: {:.1e}", r.largest_error));
   if (!is_whole(r)) return;
-  std::printf("largest reciprocity error |A_i F_ij - A_j F_ji| / min(A_i, A_j): %.1e\n",
-              r.checks.reciprocity_error);
-  std::printf("closure: %s; the largest |1 - row sum| is %.1e\n",
-              r.closed ? "closed" : "open, light escapes", r.checks.largest_row_error);
-  if (r.smoothing) std::printf("smoothing changed a factor by at most %.1e\n", *r.smoothing);
+  print_line(stdout,
+             fmt::format("largest reciprocity error |A_i F_ij - A_j F_ji| / min(A_i, A_j): {:.1e}",
+                         r.checks.reciprocity_error));
+  print_line(stdout,
+             fmt::format("closure: {}; the largest |1 - row sum| is {:.1e}",
+                         r.closed ? "closed" : "open, light escapes", r.checks.largest_row_error));
+  if (r.smoothing)
+    print_line(stdout, fmt::format("smoothing changed a factor by at most {:.1e}", *r.smoothing));
 }
 
 /// `team`: null: this process works alone.
@@ -94,10 +100,10 @@ int run_factors(const FactorOptions& options, Team* team) {
   if (!done) return report(done.error(), options.common);
   print_warnings(report_of_factors.warnings, options.common);
   if (options.common.json)
-    std::printf("%s\n", report_json(options.settings, report_of_factors).dump(2).c_str());
+    print_json(stdout, report_json(options.settings, report_of_factors));
   else if (!options.common.quiet) {
     print_report(report_of_factors);
-    std::fprintf(stderr, "wrote %s\n", options.settings.output.string().c_str());
+    print_line(stderr, "wrote " + options.settings.output.string());
   }
   return kDone;
 }

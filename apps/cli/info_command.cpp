@@ -1,7 +1,7 @@
-#include <cstdio>
-
 #include "apps/cli/cli.h"
 #include "apps/cli/machine.h"
+#include "apps/cli/print.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/gpu/device.h"
 #include "luxel/import/import.h"
 #include "luxel/scene/origin.h"
@@ -63,11 +63,11 @@ int run_devices(const InfoOptions& options) {
                                  {"kind", kind_of(d.type)},
                                  {"lacks", d.lacks},
                                  {"ray_queries", d.has_ray_queries}});
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(stdout, json);
     return kDone;
   }
   if (!devices) {
-    std::printf("no device: %s\n", devices.error().message.c_str());
+    print_line(stdout, "no device: " + devices.error().message);
     return kDone;
   }
   for (size_t i = 0; i < devices->size(); ++i) {
@@ -75,8 +75,8 @@ int run_devices(const InfoOptions& options) {
     const std::string use =
         d.lacks.empty() ? fmt::format("; luxel bake --device gpu:{} and luxel-view can use it", i)
                         : "; luxel cannot use it: it lacks " + d.lacks;
-    std::printf("%s: %s%s%s\n", d.name.c_str(), kind_of(d.type),
-                d.has_ray_queries ? ", with ray queries" : "", use.c_str());
+    print_line(stdout, fmt::format("{}: {}{}{}", d.name, kind_of(d.type),
+                                   d.has_ray_queries ? ", with ray queries" : "", use));
   }
   return kDone;
 }
@@ -90,12 +90,12 @@ int run_info(const InfoOptions& options) {
   if (!imported) return report(imported.error(), options.common);
   const nlohmann::json json = describe(imported->scene, imported->warnings);
   if (options.common.json) {
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(stdout, json);
     return kDone;
   }
   print_warnings(imported->warnings, options.common);
   for (const auto& [key, value] : json.items())
-    if (key != "warnings") std::printf("%-20s %s\n", key.c_str(), value.dump().c_str());
+    if (key != "warnings") print_line(stdout, fmt::format("{:20} {}", key, json_text(value)));
   return kDone;
 }
 

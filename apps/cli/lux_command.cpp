@@ -1,7 +1,6 @@
 // `luxel lux SCENE --from BAKE`: illuminance on work planes.
-#include <cstdio>
-
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "luxel/pipeline/command/lux.h"
 #include "luxel/scene/origin.h"
 
@@ -54,24 +53,23 @@ nlohmann::json json_of(const pipeline::LuxSettings& s, const pipeline::LuxReport
 }
 
 void print_room(const std::string& name, const pipeline::RoomLight& room) {
-  std::printf("%s\n", fmt::format("{:10} {:7} {:8.2f} {:10.5g} {:10.5g} {:10.5g} {:8.3f} {:10.2g}",
-                                  name, room.points, room.area_m2, room.mean, room.minimum,
-                                  room.maximum, room.uniformity(), room.standard_error)
-                          .c_str());
+  print_line(stdout, fmt::format("{:10} {:7} {:8.2f} {:10.5g} {:10.5g} {:10.5g} {:8.3f} {:10.2g}",
+                                 name, room.points, room.area_m2, room.mean, room.minimum,
+                                 room.maximum, room.uniformity(), room.standard_error));
 }
 
 void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::LitFloor& lit,
                  double origin_y) {
   const pipeline::Floor& floor = lit.floor;
-  std::printf(
-      "%s\n",
-      fmt::format("\nfloor {} at Y = {:.3f} m, plane {:g} m above it, points {:.3g} m by {:.3g} m "
+  print_line(stdout, "");
+  print_line(
+      stdout,
+      fmt::format("floor {} at Y = {:.3f} m, plane {:g} m above it, points {:.3g} m by {:.3g} m "
                   "apart; left out: {} in solids, {} within {:g} m of walls",
                   number, floor.y + origin_y, s.plane.plane_m, floor.cell_x(), floor.cell_z(),
-                  floor.in_solids, floor.in_boundary, s.plane.boundary_m)
-          .c_str());
-  std::printf("%-10s %7s %8s %10s %10s %10s %8s %10s\n", "", "points", "m^2", "mean", "minimum",
-              "maximum", "U0", "error");
+                  floor.in_solids, floor.in_boundary, s.plane.boundary_m));
+  print_line(stdout, fmt::format("{:10} {:>7} {:>8} {:>10} {:>10} {:>10} {:>8} {:>10}", "",
+                                 "points", "m^2", "mean", "minimum", "maximum", "U0", "error"));
   size_t small = 0;
   for (size_t k = 0; k < lit.rooms.size(); ++k)
     if (lit.rooms[k].area_m2 >= kSmallRoom_m2 || lit.rooms.size() == 1)
@@ -80,15 +78,16 @@ void print_floor(size_t number, const pipeline::LuxSettings& s, const pipeline::
       ++small;
   if (lit.rooms.size() > 1) print_room("floor", lit.all);
   if (small > 0)
-    std::printf("not listed: %zu rooms and doorways below %g m^2\n", small, kSmallRoom_m2);
+    print_line(stdout, fmt::format("not listed: {} rooms and doorways below {:g} m^2", small,
+                                   kSmallRoom_m2));
 }
 
 void print(const pipeline::LuxSettings& s, const pipeline::LuxReport& report) {
-  std::printf("unit: %s; %s\n", report.unit.symbol.c_str(), report.unit.reason.c_str());
+  print_line(stdout, fmt::format("unit: {}; {}", report.unit.symbol, report.unit.reason));
   for (size_t f = 0; f < report.floors.size(); ++f)
     print_floor(f + 1, s, report.floors[f], report.origin.y);
-  std::printf(
-      "\nU0: minimum / mean; error: standard error of the mean due to this command's rays\n");
+  print_own(stdout,
+            "\nU0: minimum / mean; error: standard error of the mean due to this command's rays\n");
 }
 
 int run_lux(const LuxOptions& options) {
@@ -110,11 +109,11 @@ int run_lux(const LuxOptions& options) {
   if (!done) return report(done.error(), options.common);
   print_warnings(lit.warnings, options.common);
   if (options.common.json)
-    std::printf("%s\n", json_of(settings, lit).dump(2).c_str());
+    print_json(stdout, json_of(settings, lit));
   else
     print(settings, lit);
   for (const std::filesystem::path& output : settings.outputs)
-    if (!options.common.quiet) std::fprintf(stderr, "wrote %s\n", output.string().c_str());
+    if (!options.common.quiet) print_line(stderr, "wrote " + output.string());
   return kDone;
 }
 

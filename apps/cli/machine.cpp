@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/cluster/mpi.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/trace/embree/embree_version.h"
@@ -48,9 +49,9 @@ std::string version_text() {
                                 pipeline::kVersion, mpi.empty() ? "without MPI" : "with " + mpi,
                                 compiler(), trace::embree_version().number);
   const auto devices = gpu::list_devices();
-  if (!devices) return out + "\ndevice: none; " + devices.error().message;
+  if (!devices) return out + "\ndevice: none; " + shown_text(devices.error().message);
   for (const gpu::DeviceInfo& d : *devices)
-    out += fmt::format("\ndevice: {}, {}{}", d.name, kind_of(d.type),
+    out += fmt::format("\ndevice: {}, {}{}", shown_text(d.name), kind_of(d.type),
                        d.lacks.empty() ? "" : "; luxel cannot use it: it lacks " + d.lacks);
   return out;
 }

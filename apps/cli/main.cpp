@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <memory>
@@ -15,6 +14,7 @@
 
 #include "apps/cli/cli.h"
 #include "apps/cli/machine.h"
+#include "apps/cli/print.h"
 #include "luxel/arguments/near_miss.h"
 #include "luxel/arguments/option_file.h"
 #include "luxel/cluster/mpi.h"
@@ -118,7 +118,7 @@ int run(int argc, char** argv) {
   Action action;
   std::unique_ptr<CLI::App> app = make_app(action);
   if (given.empty()) {
-    std::fputs(app->help().c_str(), stderr);
+    print_own(stderr, app->help().c_str());
     return kUsage;
   }
   if (const std::string unknown = about_unknown_command(*app, given); !unknown.empty())
@@ -163,10 +163,11 @@ void note_end_of_memory() {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
     if (std::uncaught_exceptions() > 0 && memory_has_ended()) throw std::bad_alloc();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "luxel: %s\n", kNoMemory);
+    for (const char* text : {"luxel: ", kNoMemory, "\n"}) luxel::cli::print_own(stderr, text);
     std::_Exit(luxel::cli::kOutOfResource);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "luxel: internal error: %s; please report this\n", error.what());
+    luxel::cli::print_line(
+        stderr, fmt::format("luxel: internal error: {}; please report this", error.what()));
   } catch (...) {
   }
   std::abort();

@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "apps/cli/terminal.h"
 #include "luxel/base/file.h"
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 
 namespace luxel::cli {
 namespace {
@@ -55,11 +56,7 @@ std::string_view name_of(ErrorCode code) {
 
 }  // namespace
 
-void print_event(const nlohmann::json& event) {
-  // What is not UTF-8 may stand in a file's name.
-  std::fprintf(stderr, "%s\n",
-               event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-}
+void print_event(const nlohmann::json& event) { print_json(stderr, event, -1); }
 
 int report(std::string_view code, int exit_code, const std::string& whole_message,
            const Common& common) {
@@ -74,12 +71,9 @@ int report(std::string_view code, int exit_code, const std::string& whole_messag
     event["event"] = "error";
     print_event(event);
   } else {
-    std::fprintf(stderr, "%s %s\n", painted("luxel:", Colour::red).c_str(), message.c_str());
+    print_line(stderr, whole_message, painted("luxel:", Colour::red) + " ");
   }
-  if (!common.json) return exit_code;
-  const nlohmann::json json{{"error", about}};
-  // What is not UTF-8 may stand in a file's name.
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  if (common.json) print_json(stdout, {{"error", about}});
   return exit_code;
 }
 
@@ -93,11 +87,10 @@ int report_usage(const std::string& message, const Common& common) {
 
 void print_warnings(const std::vector<std::string>& warnings, const Common& common) {
   for (const std::string& warning : warnings) {
-    const std::string text = short_message(warning);
     if (common.progress_json)
-      print_event({{"event", "warning"}, {"message", text}});
+      print_event({{"event", "warning"}, {"message", short_message(warning)}});
     else if (!common.quiet)
-      std::fprintf(stderr, "%s %s\n", painted("warning:", Colour::yellow).c_str(), text.c_str());
+      print_line(stderr, warning, painted("warning:", Colour::yellow) + " ");
   }
 }
 
@@ -105,7 +98,7 @@ void print_note(const std::string& note, const Common& common) {
   if (common.progress_json)
     print_event({{"event", "note"}, {"message", note}});
   else if (!common.quiet)
-    std::fprintf(stderr, "%s\n", short_message(note).c_str());
+    print_line(stderr, note);
 }
 
 int code_after_output(int code, const Common& common) {

@@ -1,9 +1,8 @@
 // `luxel probe SCENE --at x,y,z`: irradiance at a point, and where it comes from.
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "luxel/pipeline/command/probe.h"
 
 namespace luxel::cli {
@@ -79,27 +78,25 @@ nlohmann::json json_of(const pipeline::Probed& p) {
 
 std::string rgb_text(Rgb c) { return fmt::format("{:10.5g} {:10.5g} {:10.5g}", c.x, c.y, c.z); }
 
-void print_line(const std::string& line) { std::printf("%s\n", line.c_str()); }
-
 void print_where(const pipeline::Probed& p) {
   const std::string at =
       fmt::format("{:.4f}, {:.4f}, {:.4f}", p.position.x, p.position.y, p.position.z);
   if (p.name.empty())
-    print_line(fmt::format("in the air at {}, facing {:.3f}, {:.3f}, {:.3f}", at, p.normal.x,
-                           p.normal.y, p.normal.z));
+    print_line(stdout, fmt::format("in the air at {}, facing {:.3f}, {:.3f}, {:.3f}", at,
+                                   p.normal.x, p.normal.y, p.normal.z));
   else
-    print_line(fmt::format("on {} ({}) at {}, {:.2g} m from the point", p.name, p.material, at,
-                           p.distance_m));
+    print_line(stdout, fmt::format("on {} ({}) at {}, {:.2g} m from the point", p.name, p.material,
+                                   at, p.distance_m));
 }
 
 void print_light(const pipeline::Probed& p, bool by_faces) {
   const float e = luminance(p.irradiance);
-  print_line(fmt::format("{:.5g} {} +- {:.2g} (one standard error)   [{}]", e, p.unit.symbol,
-                         p.luminance_error, p.unit.reason));
-  print_line(fmt::format("{:28}                         {:>10} {:>10} {:>10}", "", "red", "green",
-                         "blue"));
+  print_line(stdout, fmt::format("{:.5g} {} +- {:.2g} (one standard error)   [{}]", e,
+                                 p.unit.symbol, p.luminance_error, p.unit.reason));
+  print_line(stdout, fmt::format("{:28}                         {:>10} {:>10} {:>10}", "", "red",
+                                 "green", "blue"));
   const auto row = [](const std::string& name, Rgb value) {
-    print_line(fmt::format("{:28}                         {}", name, rgb_text(value)));
+    print_line(stdout, fmt::format("{:28}                         {}", name, rgb_text(value)));
   };
   row("E", p.irradiance);
   row("standard error of E", p.standard_error);
@@ -110,10 +107,12 @@ void print_light(const pipeline::Probed& p, bool by_faces) {
 void print(const pipeline::Probed& p, bool by_faces) {
   print_where(p);
   print_light(p, by_faces);
-  print_line(fmt::format("\n{:28} {:>9} {:>11}    E from there", "source", "factor",
-                         by_faces ? "visible" : ""));
+  print_line(stdout, "");
+  print_line(stdout, fmt::format("{:28} {:>9} {:>11}    E from there", "source", "factor",
+                                 by_faces ? "visible" : ""));
   for (const pipeline::ProbedSource& source : p.sources)
-    print_line(fmt::format("{:28.28} {:9.6f} {:>11}    {}", source.name, source.form_factor,
+    print_line(stdout,
+               fmt::format("{:28.28} {:9.6f} {:>11}    {}", source.name, source.form_factor,
                            source.visible ? fmt::format("{:.2f} %", 100 * *source.visible) : "",
                            rgb_text(source.irradiance)));
 }
@@ -122,11 +121,10 @@ void print_out_of_time(const pipeline::ProbeSettings& s, const pipeline::Probed&
                        const Common& common) {
   if (!p.out_of_time || common.quiet) return;
   const float e = luminance(p.irradiance);
-  std::fprintf(stderr, "%s\n",
-               fmt::format("--time-budget {:g} ran out at a standard error of {:.2g} %, above "
-                           "--max-error {:g}; give more time for less noise",
-                           s.time_budget_s, e > 0 ? 100 * p.luminance_error / e : 100, s.max_error)
-                   .c_str());
+  print_line(stderr,
+             fmt::format("--time-budget {:g} ran out at a standard error of {:.2g} %, above "
+                         "--max-error {:g}; give more time for less noise",
+                         s.time_budget_s, e > 0 ? 100 * p.luminance_error / e : 100, s.max_error));
 }
 
 int run_probe(const ProbeOptions& options) {
@@ -141,7 +139,7 @@ int run_probe(const ProbeOptions& options) {
   print_warnings(probed.warnings, options.common);
   print_out_of_time(*settings, probed, options.common);
   if (options.common.json)
-    std::printf("%s\n", json_of(probed).dump(2).c_str());
+    print_json(stdout, json_of(probed));
   else
     print(probed, settings->method == pipeline::ProbeMethod::hierarchical);
   return kDone;

@@ -1,7 +1,6 @@
 // `luxel relight`: a scene's light transport into one file, and that file played.
-#include <cstdio>
-
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "apps/cli/together.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/play.h"
@@ -28,15 +27,14 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
 }
 
 void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& json) {
-  std::fprintf(
-      stderr, "%s\n",
-      fmt::format(
-          "{} patches, {} places, {:.1f} s; the matrix has {:.2f} MB and "
-          "loses {:.2f} % of indirect light, seldom more than {:.2f} %",
-          json["counts"]["patches"].get<uint64_t>(), json["counts"]["places"].get<uint64_t>(),
-          json["seconds"]["total"].get<double>(), 1e-6 * json["bytes"]["matrix"].get<double>(),
-          100 * json["usual_codec_error"].get<double>(), 100 * json["codec_error"].get<double>())
-          .c_str());
+  print_line(stderr, fmt::format("{} patches, {} places, {:.1f} s; the matrix has {:.2f} MB and "
+                                 "loses {:.2f} % of indirect light, seldom more than {:.2f} %",
+                                 json["counts"]["patches"].get<uint64_t>(),
+                                 json["counts"]["places"].get<uint64_t>(),
+                                 json["seconds"]["total"].get<double>(),
+                                 1e-6 * json["bytes"]["matrix"].get<double>(),
+                                 100 * json["usual_codec_error"].get<double>(),
+                                 100 * json["codec_error"].get<double>()));
   const nlohmann::json& error = json["indirect_error"];
   const double own = error["scene_lights"], lamps = error["point_lights"];
   std::string by;
@@ -44,10 +42,11 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
   if (lamps > 0)
     by += fmt::format("{}{:.1f} % of its mean for point lights", own > 0 ? ", " : "", 100 * lamps);
   if (!by.empty())
-    std::fprintf(stderr, "indirect light errs by at most %s (root mean square, against paths)\n",
-                 by.c_str());
-  std::fprintf(stderr, "wrote %s (%.2f MB)\n", s.output.string().c_str(),
-               1e-6 * json["bytes"]["file"].get<double>());
+    print_line(
+        stderr,
+        fmt::format("indirect light errs by at most {} (root mean square, against paths)", by));
+  print_line(stderr, fmt::format("wrote {} ({:.2f} MB)", s.output.string(),
+                                 1e-6 * json["bytes"]["file"].get<double>()));
 }
 
 /// `team`: null: this process works alone.
@@ -76,11 +75,12 @@ void print_played(const pipeline::PlaySettings& s, const pipeline::Played& playe
   double update = 0, draw = 0;
   for (const pipeline::FrameTimes& f : played.frames) update += f.update_ms(), draw += f.draw_ms;
   const double count = double(played.frames.size());
-  std::fprintf(stderr, "%zu frames: %.2f ms to relight and %.0f ms to draw, on average\n",
-               played.frames.size(), update / count, draw / count);
-  std::fprintf(stderr, "wrote %s to %s, and %s\n", (s.output / "frame-0000.png").string().c_str(),
-               fmt::format("frame-{:04}.png", played.frames.size() - 1).c_str(),
-               (s.output / "frames.csv").string().c_str());
+  print_line(stderr,
+             fmt::format("{} frames: {:.2f} ms to relight and {:.0f} ms to draw, on average",
+                         played.frames.size(), update / count, draw / count));
+  print_line(stderr, fmt::format("wrote {} to frame-{:04}.png, and {}",
+                                 (s.output / "frame-0000.png").string(), played.frames.size() - 1,
+                                 (s.output / "frames.csv").string()));
 }
 
 int run_playing(const RelightOptions& options) {
@@ -103,7 +103,7 @@ int run_playing(const RelightOptions& options) {
   });
   if (!done) return report(done.error(), options.common);
   if (options.common.json)
-    std::printf("%s\n", json_of(played).dump(2).c_str());
+    print_json(stdout, json_of(played));
   else if (!options.common.quiet)
     print_played(settings, played);
   return kDone;

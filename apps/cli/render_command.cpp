@@ -3,6 +3,7 @@
 
 #include "apps/cli/cli.h"
 #include "apps/cli/device_option.h"
+#include "apps/cli/print.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/render/overlays.h"
 #include "luxel/pipeline/render/render.h"
@@ -65,7 +66,7 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
   return s;
 }
 
-void print_json(const pipeline::RenderSettings& s, const pipeline::Rendered& rendered) {
+nlohmann::json json_of(const pipeline::RenderSettings& s, const pipeline::Rendered& rendered) {
   nlohmann::json json{{"image", s.output.string()},
                       {"technique", s.technique},
                       {"width", rendered.width},
@@ -75,19 +76,17 @@ void print_json(const pipeline::RenderSettings& s, const pipeline::Rendered& ren
   if (rendered.rays > 0)
     json["rays"] = rendered.rays, json["relative_error"] = rendered.relative_error;
   if (!rendered.tiles.empty()) json["tiles"] = rendered.tiles;
-  std::printf("%s\n", json.dump(2).c_str());
+  return json;
 }
 
 void print_report(const pipeline::RenderSettings& s, const pipeline::Rendered& rendered,
                   const Common& common) {
   if (common.quiet) return;
   if (rendered.rays > 0)
-    std::fprintf(stderr, "%s\n",
-                 fmt::format("{} paths per pixel, {} rays, standard error {:.2f} %",
-                             s.samples.value_or(pipeline::kDefaultPathSamples), rendered.rays,
-                             100 * rendered.relative_error)
-                     .c_str());
-  std::fprintf(stderr, "wrote %s\n", s.output.string().c_str());
+    print_line(stderr, fmt::format("{} paths per pixel, {} rays, standard error {:.2f} %",
+                                   s.samples.value_or(pipeline::kDefaultPathSamples), rendered.rays,
+                                   100 * rendered.relative_error));
+  print_line(stderr, "wrote " + s.output.string());
 }
 
 int run_render(const RenderOptions& options) {
@@ -104,8 +103,10 @@ int run_render(const RenderOptions& options) {
   });
   if (!done) return report(done.error(), options.common);
   print_warnings(rendered.warnings, options.common);
-  options.common.json ? print_json(*settings, rendered)
-                      : print_report(*settings, rendered, options.common);
+  if (options.common.json)
+    print_json(stdout, json_of(*settings, rendered));
+  else
+    print_report(*settings, rendered, options.common);
   return kDone;
 }
 

@@ -1,9 +1,9 @@
 #include "apps/cli/together.h"
 
 #include <chrono>
-#include <cstdio>
 #include <thread>
 
+#include "apps/cli/print.h"
 #include "luxel/cluster/mpi.h"
 #include "luxel/pipeline/settings/version.h"
 
@@ -24,8 +24,8 @@ std::string about_processes(const cluster::Joined& joined) {
 /// time, since it is at work on something else, this one does.
 void say_when_nobody_does(const cluster::Joined& joined, const std::string& unsaid) {
   std::this_thread::sleep_for(std::chrono::seconds(10));
-  std::fprintf(stderr, "luxel: process %u of %d: %s\n", joined.team ? joined.team->rank() : 0,
-               joined.processes, unsaid.c_str());
+  print_line(stderr, fmt::format("luxel: process {} of {}: {}",
+                                 joined.team ? joined.team->rank() : 0, joined.processes, unsaid));
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <thread>
 #include <utility>
 
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "apps/cli/terminal.h"
 #include "luxel/base/clock.h"
 #include "luxel/base/output_folder.h"
@@ -47,15 +47,14 @@ class ProgressLine {
     if (now.stage == kRayStage && now.stage_seconds > 0)
       line += fmt::format("  {:.1f} Mrays/s",
                           double(now.done - now.skipped) * 1e-6 / now.stage_seconds);
-    std::fprintf(stderr, "\r\033[K%s%s", line.c_str(), left_text(now).c_str());
-    std::fflush(stderr);
+    rewrite_line(line + left_text(now));
   }
 
   /// The work has ended: shows the stages it has finished. After an error the last one is not.
   void end(const Progress& progress, bool succeeded) {
     print_notes(progress);
     if (quiet_) return;
-    if (terminal_) std::fputs("\r\033[K", stderr);
+    clear_line();
     std::vector<Stage> stages = progress.stages();
     if (!succeeded && !stages.empty()) stages.pop_back();
     for (const Stage& stage : with_one_name_each(stages)) {
@@ -63,7 +62,7 @@ class ProgressLine {
       if (stage.name == kRayStage && rays_ + stage_rays_ > 0 && stage.seconds > 0)
         line +=
             fmt::format("   {:.1f} Mrays/s", double(rays_ + stage_rays_) * 1e-6 / stage.seconds);
-      std::fprintf(stderr, "%s\n", line.c_str());
+      print_line(stderr, line);
     }
   }
 
@@ -99,7 +98,7 @@ class ProgressLine {
 
   void print_share(const Progress::Snapshot& now) {
     if (now.share < next_share_ || seconds_since(printed_) < kLineSeconds) return;
-    std::fprintf(stderr, "%s%s\n", (share_text(now) + now.stage).c_str(), left_text(now).c_str());
+    print_line(stderr, share_text(now) + now.stage + left_text(now));
     printed_ = Clock::now();
     next_share_ = kLineShare * (std::floor(now.share / kLineShare) + 1);
   }
@@ -115,14 +114,17 @@ class ProgressLine {
     const std::string way_on = says_way_on_ ? progress.way_on() : std::string();
     if (way_on.empty()) return;
     says_way_on_ = false;
-    std::fprintf(stderr, "%sfinished parts are kept from now on: %s\n", terminal_ ? "\r\033[K" : "",
-                 way_on.c_str());
+    clear_line();
+    print_line(stderr, "finished parts are kept from now on: " + way_on);
   }
   void print_notes(const Progress& progress) {
     for (const std::string& note : progress.notes(notes_)) {
-      if (!quiet_) std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", note.c_str());
+      if (!quiet_) clear_line(), print_line(stderr, note);
       ++notes_;
     }
+  }
+  void clear_line() const {
+    if (terminal_) rewrite_line("");
   }
 
   bool quiet_, says_way_on_, terminal_;
@@ -268,7 +270,7 @@ int run_and_print(const Common& common,
   if (!done) return report(done.error(), common);
   print_warnings(json.value("warnings", std::vector<std::string>()), common);
   if (common.json)
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(stdout, json);
   else if (!common.quiet)
     summary(json);
   return kDone;

@@ -2,15 +2,17 @@
 
 #include <imgui.h>
 
+#include "apps/view/ui_text.h"
+
 namespace luxel::view_window {
 namespace {
 
 /// A list to choose from, of names that need not differ.
 void lay_out_choices(const char* label, std::span<const EditChoice> choices, int& chosen) {
-  const char* now = "none";
+  std::string now = "none";
   for (const EditChoice& choice : choices)
-    if (choice.number == chosen) now = choice.name.c_str();
-  if (!ImGui::BeginCombo(label, now)) return;
+    if (choice.number == chosen) now = short_message(choice.name);
+  if (!ImGui::BeginCombo(label, now.c_str())) return;
   if (ImGui::Selectable("none", chosen < 0)) chosen = -1;
   ImGuiListClipper clipper;
   clipper.Begin(int(choices.size()));
@@ -18,7 +20,7 @@ void lay_out_choices(const char* label, std::span<const EditChoice> choices, int
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       ImGui::PushID(i);
       const EditChoice& choice = choices[size_t(i)];
-      if (ImGui::Selectable(choice.name.c_str(), choice.number == chosen)) chosen = choice.number;
+      if (lay_out_line_of_list(choice.name, choice.number == chosen)) chosen = choice.number;
       ImGui::PopID();
     }
   ImGui::EndCombo();
@@ -38,7 +40,7 @@ void lay_out_material(EditPanel& panel) {
   MaterialLine& look = panel.look;
   ImGui::ColorEdit3(look.has_texture ? "tint" : "reflectance", look.reflectance.data(),
                     ImGuiColorEditFlags_Float);
-  ImGui::TextUnformatted(look.reflects.c_str());
+  lay_out_text(look.reflects);
   if (look.has_metal)
     ImGui::SliderFloat("metal", &look.metallic, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   ImGui::ColorEdit3("glow", look.glow.color.data(), ImGuiColorEditFlags_NoInputs);
@@ -80,7 +82,7 @@ void lay_out_steps(EditPanel& panel) {
   panel.asks_to_redo = lay_out_button("redo", panel.can_redo);
   ImGui::SameLine();
   panel.asks_to_save = lay_out_button("save scene", panel.save_state.empty());
-  if (!panel.save_state.empty()) ImGui::TextUnformatted(panel.save_state.c_str());
+  if (!panel.save_state.empty()) lay_out_text(panel.save_state);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "apps/view/ui_text.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -54,7 +56,7 @@ void lay_out_element(HemicubePanel& panel) {
   ImGui::RadioButton("light", &panel.faces, 1);
   ImGui::SameLine();
   ImGui::RadioButton("no faces", &panel.faces, 2);
-  for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
+  for (const std::string& line : panel.lines) lay_out_text(line);
   if (!panel.histogram.empty())
     ImGui::PlotHistogram("##row", panel.histogram.data(), int(panel.histogram.size()), 0, nullptr,
                          0, FLT_MAX, {ImGui::GetFontSize() * 18, ImGui::GetFontSize() * 4});
@@ -64,7 +66,7 @@ void lay_out_element(HemicubePanel& panel) {
 }  // namespace
 
 void lay_out_hemicube(HemicubePanel& panel) {
-  ImGui::ProgressBar(panel.share, {ImGui::GetFontSize() * 18, 0}, panel.state.c_str());
+  lay_out_progress(panel.share, panel.state);
   panel.asks_to_stop = panel.can_stop && ImGui::Button("stop");
   panel.asks_to_go_on = panel.can_go_on && ImGui::Button("go on");
   lay_out_techniques(panel);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "apps/view/ui_text.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -20,7 +22,7 @@ void lay_out_lines(std::vector<LampLine>& lines, int& selected) {
     ImGui::PushID(int(i));  // names need not differ
     const std::string name = lines[i].name + (lines[i].is_on ? "" : " (off)");
     const bool is_selected = selected == int(i);
-    if (ImGui::Selectable(name.c_str(), is_selected)) selected = is_selected ? -1 : int(i);
+    if (lay_out_line_of_list(name, is_selected)) selected = is_selected ? -1 : int(i);
     if (is_selected) {
       ImGui::Indent();
       lay_out_line(lines[i]);
@@ -91,7 +93,7 @@ void lay_out_buttons(LampPanel& panel) {
   if (panel.checked >= 0) ImGui::ProgressBar(panel.checked, {ImGui::GetFontSize() * 18, 0});
   if (panel.found.empty()) return;
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);
-  ImGui::TextUnformatted(panel.found.c_str());
+  lay_out_text(panel.found);
   ImGui::PopTextWrapPos();
 }
 

@@ -106,7 +106,7 @@ class LampSubject : public Subject {
     return has_found;
   }
   void tell(const std::string& sentence) {
-    said_at_end_ += (said_at_end_.empty() ? "" : "\n") + sentence;
+    said_at_end_ += (said_at_end_.empty() ? "" : "; ") + sentence;
   }
 
   LampSession lamps_;

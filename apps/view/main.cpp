@@ -3,13 +3,13 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
 
 #include "apps/view/next_subject.h"
 #include "apps/view/offscreen.h"
+#include "apps/view/print.h"
 #include "apps/view/remembered.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
@@ -177,8 +177,7 @@ Result<view_window::RelightParams> relight_of(const Options& options,
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings)
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : warnings) view_window::print_line(warning, "warning: ");
 }
 
 /// The second bake, if there is one; one camera looks at both.
@@ -298,15 +297,17 @@ Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(
       view_window::draw_offscreen(commands, *subject, std::move(to_draw.beside), params, write));
   LUXEL_TRY(const std::string said, subject->end());
-  if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
-  std::fprintf(stderr, "wrote %s, drawn by %s\n",
-               picture_file(options, std::max(options.turn_frames - 1, 0)).string().c_str(),
-               device->name.c_str());
+  if (!said.empty()) view_window::print_line(said);
+  view_window::print_line(fmt::format(
+      "wrote {}, drawn by {}", picture_file(options, std::max(options.turn_frames - 1, 0)).string(),
+      device->name));
   return {};
 }
 
+void print_error(std::string_view sentence) { view_window::print_line(sentence, "luxel-view: "); }
+
 int report(const Error& error) {
-  std::fprintf(stderr, "luxel-view: %s\n", error.message.c_str());
+  print_error(error.message);
   const bool is_resource = error.code == ErrorCode::out_of_memory ||
                            error.code == ErrorCode::out_of_disk ||
                            error.code == ErrorCode::out_of_time;
@@ -380,15 +381,15 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    std::fprintf(stderr, "luxel-view: %s; 'luxel-view --help' lists the options\n", error.what());
+    print_error(fmt::format("{}; 'luxel-view --help' lists the options", error.what()));
     return kUsage;
   }
   if (options.subject.empty() && (options.offscreen || !options.play.empty())) {
-    std::fprintf(stderr, "luxel-view: --offscreen and --play need a SUBJECT\n");
+    print_error("--offscreen and --play need a SUBJECT");
     return kUsage;
   }
   if (!options.screenshot.empty() && !options.offscreen && options.play.empty()) {
-    std::fprintf(stderr, "luxel-view: --screenshot needs --offscreen or --play\n");
+    print_error("--screenshot needs --offscreen or --play");
     return kUsage;
   }
   if (const Status size = parse_size(options); !size) return report(size.error());
@@ -405,7 +406,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report({ErrorCode::out_of_memory, "out of memory"});
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "luxel-view: internal error: %s; please report this\n", error.what());
+    print_error(fmt::format("internal error: {}; please report this", error.what()));
     return kBadInput;
   }
 }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "luxel/base/shown_text.h"
+
 namespace luxel::view_window {
 
 Result<NextSubject> begin_next(const std::filesystem::path& path, const OpenSubject& open,
@@ -27,7 +29,7 @@ std::string full_path(const std::filesystem::path& path) {
 }
 
 std::string title_of(const std::filesystem::path& path) {
-  return std::filesystem::absolute(path).lexically_normal().filename().string();
+  return short_message(std::filesystem::absolute(path).lexically_normal().filename().string());
 }
 
 }  // namespace luxel::view_window

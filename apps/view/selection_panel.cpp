@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/ui_text.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr ImU32 kBlue = IM_COL32(90, 140, 255, 255), kRed = IM_COL32(235, 75, 60
 
 void lay_out_lines(const std::vector<std::string>& lines) {
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 32);
-  for (const std::string& line : lines) ImGui::TextUnformatted(line.c_str());
+  for (const std::string& line : lines) lay_out_text(line);
   ImGui::PopTextWrapPos();
 }
 

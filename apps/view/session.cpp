@@ -5,11 +5,11 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <span>
 
 #include "apps/view/frame_table.h"
 #include "apps/view/parts.h"
+#include "apps/view/print.h"
 #include "apps/view/session_files.h"
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
@@ -296,7 +296,7 @@ Status end_play(Session& s) {
     return fail(ErrorCode::bad_input, "{}", s.panel.message);
   }
   LUXEL_TRY(const std::string said, s.subject->end());
-  if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
+  if (!said.empty()) print_line(said);
   return {};
 }
 
@@ -309,8 +309,7 @@ Status show(Session s) {
   Result<bool> goes_on = true;
   while (goes_on && *goes_on && !glfwWindowShouldClose(s.window.get())) goes_on = go_on(s);
   // A device that is lost takes nothing with it that the user has made.
-  if (const Status kept = keep_habits(s); !kept)
-    std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
+  if (const Status kept = keep_habits(s); !kept) print_line(kept.error().message, "warning: ");
   if (!goes_on) return Failure{goes_on.error()};
   if (s.params.play && !glfwWindowShouldClose(s.window.get())) LUXEL_TRY_STATUS(end_play(s));
   if (!s.params.frame_table.empty()) {

@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include "apps/view/ui_text.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -19,8 +21,8 @@ void lay_out_number(NumberLine& line) {
 }
 
 void lay_out_work(SolverPanel& panel) {
-  ImGui::ProgressBar(panel.share, {ImGui::GetFontSize() * 18, 0}, panel.state.c_str());
-  for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
+  lay_out_progress(panel.share, panel.state);
+  for (const std::string& line : panel.lines) lay_out_text(line);
   panel.asked = -1;
   for (size_t i = 0; i < panel.asks.size(); ++i) {
     if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * kColumn);
@@ -39,7 +41,7 @@ void lay_out_solver(SolverPanel& panel) {
   ImGui::Separator();
   for (size_t i = 0; i < panel.kinds.size(); ++i)
     ImGui::RadioButton(panel.kinds[i].c_str(), &panel.kind, int(i));
-  if (!panel.note.empty()) ImGui::TextUnformatted(panel.note.c_str());
+  if (!panel.note.empty()) lay_out_text(panel.note);
   ImGui::Separator();
   for (size_t i = 0; i < panel.over.size(); ++i) {
     if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * kColumn);

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "apps/view/ui_text.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -185,7 +187,7 @@ class ImGuiUi : public Ui {
     ImGui::Begin((panel.title + "###panel").c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     if (!std::exchange(has_layout_, true)) put_headers(panel.layout);
     take_layout(panel.layout);
-    ImGui::TextUnformatted(panel.about.c_str());
+    lay_out_text(panel.about);
     lay_out_again(panel);
     if (panel.is_empty) return lay_out_empty(panel);
     if (panel.bake) lay_out_bake(*panel.bake);
@@ -203,7 +205,7 @@ class ImGuiUi : public Ui {
     if (!panel.views.empty() && ImGui::CollapsingHeader("views of the file"))
       for (size_t i = 0; i < panel.views.size(); ++i) {
         ImGui::PushID(int(i));  // names need not differ
-        if (ImGui::Selectable(panel.views[i].c_str())) panel.view = int(i);
+        if (lay_out_line_of_list(panel.views[i], false)) panel.view = int(i);
         ImGui::PopID();
       }
     lay_out_bookmarks(panel);
@@ -284,13 +286,13 @@ class ImGuiUi : public Ui {
 
   static void lay_out_wrapped(const std::string& text) {
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-    ImGui::TextUnformatted(text.c_str());
+    lay_out_text(text);
     ImGui::PopTextWrapPos();
   }
 
   static void lay_out_bake(BakeLines& bake) {
-    ImGui::ProgressBar(bake.share, {ImGui::GetFontSize() * 18, 0}, bake.state.c_str());
-    for (const std::string& line : bake.lines) ImGui::TextUnformatted(line.c_str());
+    lay_out_progress(bake.share, bake.state);
+    for (const std::string& line : bake.lines) lay_out_text(line);
     if (!bake.note.empty()) lay_out_wrapped(bake.note);
     if (bake.can_stop) bake.asks_to_stop = ImGui::Button("stop");
     if (bake.can_go_on) bake.asks_to_go_on = ImGui::Button("go on");
@@ -299,9 +301,8 @@ class ImGuiUi : public Ui {
   }
 
   static void lay_out_relight(RelightLines& relight) {
-    if (!relight.stage.empty())
-      ImGui::ProgressBar(relight.share, {ImGui::GetFontSize() * 18, 0}, relight.stage.c_str());
-    if (!relight.left.empty()) ImGui::TextUnformatted(relight.left.c_str());
+    if (!relight.stage.empty()) lay_out_progress(relight.share, relight.stage);
+    if (!relight.left.empty()) lay_out_text(relight.left);
     relight.asks = ImGui::Button(relight.does.c_str());
     ImGui::Separator();
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "luxel/base/shown_text.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -86,7 +88,7 @@ void lay_out_layers(LookPanel& look) {
       for (LayerLine& other : look.layers) other.dimmer = &other == &line ? 1 : 0;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
-    ImGui::SliderFloat(line.words.c_str(), &line.dimmer, 0, 2, "%.2f");
+    ImGui::SliderFloat(short_message(line.words).c_str(), &line.dimmer, 0, 2, "%.2f");
     ImGui::PopID();
   }
   if (ImGui::Button("as baked"))

@@ -9,6 +9,7 @@
 #include "bindings/python/options.h"
 #include "luxel/arguments/bake_options.h"
 #include "luxel/arguments/option_file.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/solver/bake_options.h"
@@ -68,11 +69,9 @@ std::string save_files(const PythonBake& self, const std::filesystem::path& fold
   pipeline::BakeSettings settings = self.settings;
   settings.output = folder;
   Progress saving;
-  return value_of(run(saving, callback,
-                      [&](Progress& p) {
-                        return pipeline::save_bake(settings, self.bake, *self.progress, p);
-                      }))
-      .dump();
+  return json_text(value_of(run(saving, callback, [&](Progress& p) {
+    return pipeline::save_bake(settings, self.bake, *self.progress, p);
+  })));
 }
 
 const PythonBake& bake_of(const py::object& self) { return self.cast<const PythonBake&>(); }

@@ -6,6 +6,7 @@
 
 #include "bindings/python/arrays.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/command/compare.h"
 
 namespace luxel::python {
@@ -31,7 +32,7 @@ std::string compare_arrays(const Array<float>& a, const Array<float>& b,
   const pipeline::Measured found = value_of(run(progress, callback, [&](Progress& p) {
     return pipeline::measure(first, second, exposure, p);
   }));
-  return pipeline::to_json(found.numbers).dump();
+  return json_text(pipeline::to_json(found.numbers));
 }
 
 std::string compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
@@ -42,7 +43,7 @@ std::string compare_files(const std::filesystem::path& a, const std::filesystem:
   Progress progress;
   const pipeline::Compared found = value_of(
       run(progress, callback, [&](Progress& p) { return pipeline::compare(settings, p); }));
-  return pipeline::to_json(found).dump();
+  return json_text(pipeline::to_json(found));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "luxel/base/shown_text.h"
+
 namespace luxel::python {
 namespace {
 
@@ -35,11 +37,9 @@ void stop_all() {
   all.is_less.wait(lock, [&] { return all.progresses.empty(); });
 }
 
-/// A sentence, which may name a file whose name is no UTF-8.
+/// Python prints sentences as they are: what they quote is to do no harm there.
 py::object text_of_sentence(const std::string& sentence) {
-  PyObject* text = PyUnicode_DecodeUTF8(sentence.data(), Py_ssize_t(sentence.size()), "replace");
-  if (!text) throw py::error_already_set();
-  return py::reinterpret_steal<py::object>(text);
+  return py::str(short_message(sentence));
 }
 
 PyObject* class_of(ErrorCode code) {

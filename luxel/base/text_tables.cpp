@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "luxel/base/shown_text.h"
+
 namespace luxel {
 inline namespace base {
 namespace {
@@ -65,6 +67,19 @@ TextRow csv_cells(std::string_view line) {
 }
 
 }  // namespace
+
+std::string csv_cell(std::string_view text) {
+  std::string shown = shown_text(text);
+  // Blanks in front are not looked at by those that look for a formula.
+  const size_t first = shown.find_first_not_of(' ');
+  const bool is_formula =
+      first != shown.npos && std::string_view("=+-@").find(shown[first]) != std::string_view::npos;
+  if (is_formula) shown.insert(0, "'");
+  if (!is_formula && shown.find_first_of(",\"") == shown.npos) return shown;
+  std::string out(1, '"');
+  for (const char c : shown) out.append(c == '"' ? 2 : 1, c);
+  return out + '"';
+}
 
 std::vector<TextRow> csv_rows(std::string_view text) {
   std::vector<TextRow> rows;

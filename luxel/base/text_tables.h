@@ -13,6 +13,11 @@ inline namespace base {
 
 using TextRow = std::vector<std::string>;
 
+/// A text, not a number, as a cell of a CSV table: shown_text(), in quotes where it has a comma or
+/// a quote. Spreadsheets would compute one that starts with = + - or @: an apostrophe in front, as
+/// people type it, tells them that it is text.
+std::string csv_cell(std::string_view text);
+
 /// Rows of a CSV text with quoted cells (a quoted quote is doubled); empty lines, comment lines (#)
 /// and the header row are left out.
 std::vector<TextRow> csv_rows(std::string_view text);

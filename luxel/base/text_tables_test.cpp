@@ -13,6 +13,26 @@ TEST(TextTables, CsvCellsMayHoldCommasAndQuotes) {
   EXPECT_TRUE(csv_rows("").empty());
 }
 
+TEST(TextTables, ACellIsATextWhateverItStartsWith) {
+  for (const auto& [text, cell] : {std::pair("wall 1", "wall 1"),
+                                   {"a,b", "\"a,b\""},
+                                   {"\"a\"", "\"\"\"a\"\"\""},
+                                   {"", ""},
+                                   {"=1+1", "\"'=1+1\""},
+                                   {"+a", "\"'+a\""},
+                                   {"-1", "\"'-1\""},
+                                   {"@x", "\"'@x\""},
+                                   {"  =1", "\"'  =1\""},
+                                   {"a=1", "a=1"},
+                                   {"\t=1\n", "\\t=1\\n"},
+                                   {"T\xfcr", "T\\xfcr"}}) {
+    EXPECT_EQ(csv_cell(text), cell);
+    const auto rows = csv_rows("header\n" + csv_cell(text) + ",2\n");
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].size(), 2u);
+  }
+}
+
 TEST(TextTables, TheMarkdownTableUnderItsHeading) {
   const char* text =
       "# One\n| n | v |\n|---|---|\n| 1 | no |\n\n## Two, the second\nwords\n| x | y |\n|---|---|\n"

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "luxel/base/base64.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/export/gltf_tree.h"
 #include "luxel/scene/light_kinds.h"
 
@@ -55,7 +56,7 @@ void put_word(uint32_t value, std::vector<std::byte>& out) {
 }
 
 Result<std::vector<std::byte>> put_together(const GltfFile& file, const std::string& name) {
-  std::string text = file.document.dump(file.is_glb ? -1 : 1);
+  std::string text = json_text(file.document, file.is_glb ? -1 : 1);
   std::vector<std::byte> out;
   if (file.is_glb) {
     while (text.size() % 4 != 0) text += ' ';

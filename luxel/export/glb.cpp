@@ -6,6 +6,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/digest.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/export/json_parts.h"
 
 namespace luxel::export_ {
@@ -44,7 +45,7 @@ template <class Bounds>
 size_t find_or_append(Glb& glb, std::span<const std::byte> bytes, json kind, int target,
                       size_t stride, const Bounds& bounds) {
   Digest digest;
-  digest.add(bytes), digest.add(kind.dump());
+  digest.add(bytes), digest.add(json_text(kind));
   const auto [begin, end] = glb.accessor_of_digest.equal_range(digest.value());
   for (auto known = begin; known != end; ++known)
     if (holds(glb, glb.json["accessors"][known->second], kind, bytes)) return known->second;
@@ -130,7 +131,7 @@ Result<std::vector<std::byte>> finish(Glb glb) {
   if (!glb.extensions_used.empty()) document["extensionsUsed"] = glb.extensions_used;
   if (!binary.empty()) document["buffers"] = json::array({{{"byteLength", binary.size()}}});
   // Names from files need not be valid UTF-8: what is not becomes U+FFFD instead of an exception.
-  const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = json_text(document);
   std::vector<std::byte> chunk(text.size());
   std::memcpy(chunk.data(), text.data(), text.size());
   pad_to_4(chunk, std::byte{' '});

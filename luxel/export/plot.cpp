@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/export/plot_axis.h"
 
 namespace luxel::export_ {
@@ -163,7 +164,7 @@ void draw_legend(const Plot& plot, const Frame& f, Out out) {
 
 std::string escape_xml(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : shown_text(text)) {  // XML has no control characters, either
     if (c == '&')
       out += "&amp;";
     else if (c == '<')

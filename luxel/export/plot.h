@@ -32,7 +32,7 @@ struct Plot {
 /// same text for the same plot.
 std::string svg(const Plot& plot);
 
-/// `text` with the characters escaped that mean something in XML and HTML.
+/// shown_text() with the characters escaped that mean something in XML and HTML.
 std::string escape_xml(const std::string& text);
 
 }  // namespace luxel::export_

@@ -7,6 +7,7 @@
 #include "luxel/base/base64.h"
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/export/json_parts.h"
 #include "luxel/export/small_picture.h"
@@ -187,8 +188,7 @@ Result<std::string> view_html(const ViewPage& page) {
   }
   LUXEL_TRY(about["surroundings"], append_surroundings(html, page.environment));
   LUXEL_TRY_STATUS(append_packed(html, "model", page.glb));
-  append_data(html, "about", "application/json",
-              about.dump(-1, ' ', true, json::error_handler_t::replace));
+  append_data(html, "about", "application/json", json_text(about));
   html += view_page_after_data();
   return html;
 }

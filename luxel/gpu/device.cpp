@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 
 namespace luxel::gpu {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 
 namespace luxel::gpu {
 namespace {

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <exception>
 #include <new>
-#include <nlohmann/json.hpp>
 
+<<<<<<< HEAD
 #include "luxel/base/process_memory.h"
+=======
+#include "luxel/base/shown_text.h"
+>>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 #include "luxel/scene/sides.h"
@@ -70,21 +73,12 @@ void keep_nodes(std::span<const scene::Instance> read, Imported& imported) {
   if (!imported.object_origin.empty()) imported.object_origin.resize(count);
 }
 
-/// Bytes that are no UTF-8, as old programs write them, become the replacement character: names end
-/// up in JSON, which has no others.
-void make_utf8(std::string& text) {
-  using nlohmann::json;
-  if (std::all_of(text.begin(), text.end(), [](char c) { return uint8_t(c) < 0x80; })) return;
-  const std::string said = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
-  text = json::parse(said).get<std::string>();
-}
-
-void make_names_utf8(Imported& imported) {
-  scene::Scene& scene = imported.scene;
-  make_utf8(scene.name);
-  for (std::string& warning : imported.warnings) make_utf8(warning);
+/// Old programs write names in Latin-1 and the like. From here on all are UTF-8: they end up in
+/// JSON, which has nothing else.
+void make_names_utf8(scene::Scene& scene) {
+  scene.name = valid_utf8(scene.name);
   const auto all = [](auto& things) {
-    for (auto& thing : things) make_utf8(thing.name);
+    for (auto& thing : things) thing.name = valid_utf8(thing.name);
   };
   all(scene.meshes), all(scene.instances), all(scene.materials), all(scene.textures);
   all(scene.lights), all(scene.cameras);
@@ -111,12 +105,21 @@ Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
     if (!read && says_no_memory(read.error())) return source.memory.used_up(source.name);
     LUXEL_TRY(Imported imported, std::move(read));
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
+<<<<<<< HEAD
     make_names_utf8(imported);
     const std::vector<scene::Instance> instances = imported.scene.instances;
+=======
+    make_names_utf8(imported.scene);
+    const std::vector<scene::Instance> read = imported.scene.instances;
+>>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     keep_nodes(instances, imported);
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
+<<<<<<< HEAD
     cut(imported.warnings, source.name);
+=======
+    for (std::string& warning : imported.warnings) warning = valid_utf8(warning);
+>>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
     const float crease_rad = crease_deg(source, imported, params) * kPi / 180;
     for (scene::Mesh& mesh : imported.scene.meshes) scene::smooth_normals(mesh, crease_rad);
     scene::link_sides(imported.scene);
@@ -137,7 +140,7 @@ Result<Imported> import_scene(const std::filesystem::path& path, const ImportPar
   const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY(std::vector<std::byte> bytes, read_counted(path, memory));
   return read_checked({path,
-                       path.string(),
+                       shown_text(path.string()),
                        lower_case(path.extension().string()),
                        {path.parent_path(), params.search_paths, params.trust_paths},
                        memory,
@@ -151,14 +154,18 @@ Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& n
   const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY_STATUS(memory.take(bytes.size(), name));
   const std::string extension = lower_case(std::filesystem::path(name).extension().string());
-  return read_checked({name, name, extension, {}, memory, std::move(bytes)}, {});
+  return read_checked({name, shown_text(name), extension, {}, memory, std::move(bytes)}, {});
 }
 
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
                             const ImportParams& params) {
   ReadingMemory memory(0);
+<<<<<<< HEAD
   const MemoryLimit limit(memory.left_bytes());
   return read_checked({name, name, ".glb", {}, memory, std::move(bytes)}, params);
+=======
+  return read_checked({name, shown_text(name), ".glb", {}, memory, std::move(bytes)}, params);
+>>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
 }
 
 }  // namespace luxel::import

@@ -18,7 +18,7 @@ namespace luxel::import {
 /// A file to read, already in memory.
 struct SourceFile {
   std::filesystem::path path;
-  std::string name;       ///< what messages call it
+  std::string name;       ///< what messages call it: shown_text()
   std::string extension;  ///< lower case, with the dot
   SceneFiles files;       ///< where files that it names may lie
   ReadingMemory& memory;  ///< what is left for reading it

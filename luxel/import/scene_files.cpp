@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "luxel/base/real_path.h"
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/import/text_lines.h"
 
 namespace luxel::import {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "luxel/base/random.h"
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/import/readers.h"
 
 namespace luxel::import {

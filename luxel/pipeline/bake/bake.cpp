@@ -8,6 +8,7 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/share_out.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/bake/bake_files.h"
 #include "luxel/pipeline/bake/bake_report.h"
 #include "luxel/pipeline/bake/bake_scene.h"
@@ -53,9 +54,7 @@ Result<FinishedFiles> finished_files(const BakeSettings& settings, const Bake& b
   nlohmann::json& names = out.report["files"] = nlohmann::json::array();
   for (const OutputFile& file : out.files) names.push_back(file.path.filename().string());
   names.push_back("bake.json");
-  out.files.push_back(
-      text_file(settings.output / "bake.json",
-                out.report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
+  out.files.push_back(text_file(settings.output / "bake.json", json_text(out.report, 2) + "\n"));
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/solver/solvers.h"
 
@@ -40,7 +41,7 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
 Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress) {
   if (!team) return {};
   // Names of things may be no UTF-8, which JSON knows nothing else of.
-  const std::string own = identity.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string own = json_text(identity);
   LUXEL_TRY(const auto all, team->all_gather(std::as_bytes(std::span(own)), progress));
   const auto read = [&](size_t rank) {
     const auto* text = reinterpret_cast<const char*>(all[rank].data());

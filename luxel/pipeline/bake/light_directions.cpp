@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/image/codec.h"
 #include "luxel/post/dilate.h"
@@ -138,7 +139,7 @@ Result<std::vector<OutputFile>> probe_files(const ProbeGrid& grid, DVec3 origin,
   LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(picture));
   std::vector<OutputFile> out;
   out.push_back({folder / "probes.exr", std::move(exr)});
-  out.push_back(text_file(folder / "probes.json", json.dump(2) + "\n"));
+  out.push_back(text_file(folder / "probes.json", json_text(json, 2) + "\n"));
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/base/share_out.h"
+#include "luxel/base/text_tables.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/reuse/same_work.h"
 #include "luxel/scene/validate.h"
@@ -146,14 +147,6 @@ Result<viewfactor::FactorMatrix> compute(const FactorSettings& s, const scene::S
                                      progress, team);
 }
 
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string out(1, '"');
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  out += '"';
-  return out;
-}
-
 std::vector<size_t> chosen(uint32_t only, size_t count) {
   if (only != scene::kNone) return {only};
   std::vector<size_t> all(count);
@@ -218,10 +211,10 @@ std::string factors_csv(const viewfactor::FactorMatrix& matrix,
   std::string csv;
   csv.reserve(kBytesPerNumber * rows.size() * columns.size());
   csv = "surface";
-  for (const size_t j : columns) csv.append(",").append(quoted(matrix.names[j]));
+  for (const size_t j : columns) csv.append(",").append(csv_cell(matrix.names[j]));
   csv += "\n";
   for (const size_t i : rows) {
-    csv += quoted(matrix.names[i]);
+    csv += csv_cell(matrix.names[i]);
     for (const size_t j : columns) csv += fmt::format(",{:.17g}", matrix.at(i, j));
     csv += "\n";
   }

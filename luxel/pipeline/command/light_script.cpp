@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/scene/brightness.h"
 #include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
@@ -28,7 +29,7 @@ struct Node {
 
 Failure wrong(const Node& node, std::string_view wanted) {
   return fail(ErrorCode::bad_input, "{} is {}; it should be {}", node.where,
-              node.value.dump().substr(0, 60), wanted);
+              json_text(node.value).substr(0, 60), wanted);
 }
 
 Status only_fields(const Node& node, std::span<const std::string_view> known,
@@ -242,7 +243,7 @@ Status read_picture(const Node& root, LightScript& out) {
   if (root.has("camera")) LUXEL_TRY_STATUS(read_camera(root.at("camera"), out));
   if (root.has("exposure")) {
     const json& value = root.value["exposure"];
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string text = value.is_string() ? value.get<std::string>() : json_text(value);
     const auto exposure = parse_exposure(text);
     if (!exposure) return wrong(root.at("exposure"), "\"auto\" or a number of stops");
     out.exposure = *exposure;

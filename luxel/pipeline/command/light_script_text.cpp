@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/command/light_script.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/scene/origin.h"
@@ -72,7 +73,7 @@ std::string text_of(const LightScript& script, DVec3 origin) {
     out["lights"].push_back(json_of(moving, origin));
   for (const LightScript::Glow& glow : script.glows)
     out["emission"].push_back({{"material", glow.material}, {"radiance", json_of(glow.radiance)}});
-  return out.dump(1) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 }  // namespace luxel::pipeline

@@ -7,6 +7,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/digest.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
 
 namespace luxel::pipeline {
@@ -59,7 +60,7 @@ Status write_kept(const KeptBake& kept, RecordFile& file) {
 std::string header_of(const json& identity, const scene::SceneState& state) {
   json header = identity;
   header["digest"] = fmt::format("{:016x}", digest_of_state(state));
-  return header.dump(-1, ' ', false, json::error_handler_t::replace);
+  return json_text(header);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/reuse/bake_parts.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/scene/digest.h"
@@ -36,7 +37,7 @@ std::vector<scene::ItemDigest> items_of(const json& list) {
 }
 
 std::string text_of(const json& object, const std::string& key) {
-  return object.contains(key) ? object[key].dump() : "nothing";
+  return object.contains(key) ? json_text(object[key]) : "nothing";
 }
 
 /// "samples 256 there, 512 here": the first by name.
@@ -158,7 +159,7 @@ Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   json described = checkpoint_header(*identity_, scene);
   described["bake"] = *all_settings_;
   // Names of things may be no UTF-8, which JSON knows nothing else of.
-  const std::string header = described.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string header = json_text(described);
   header_ = header;
   LUXEL_TRY(std::optional<RecordFile> found, own_file(header, progress));
   LUXEL_TRY(std::vector<RecordFile> others, other_files(header, progress));

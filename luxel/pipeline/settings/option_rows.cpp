@@ -1,5 +1,7 @@
 #include "luxel/pipeline/settings/option_rows.h"
 
+#include "luxel/base/shown_text.h"
+
 #include <algorithm>
 
 namespace luxel::pipeline {
@@ -35,7 +37,7 @@ std::string key_of(std::string_view flag) {
 
 std::string option_text(const nlohmann::json& json) {
   if (json.is_string()) return json.get<std::string>();
-  if (!json.is_array()) return json.dump();
+  if (!json.is_array()) return json_text(json);
   std::string out;
   for (const nlohmann::json& one : json) out += (out.empty() ? "" : ",") + option_text(one);
   return out;

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/settings/option.h"
 
 namespace luxel::pipeline {
@@ -127,7 +128,8 @@ struct Rows {
     };
     row.read_json = [access, flag = row.flag](S& s, const nlohmann::json& json) -> Status {
       if (!json.is_boolean())
-        return fail(ErrorCode::bad_setting, "{}: {} is neither true nor false", flag, json.dump());
+        return fail(ErrorCode::bad_setting, "{}: {} is neither true nor false", flag,
+                    json_text(json));
       return std::invoke(access, s) = json.get<bool>(), Status{};
     };
     row.to_json = [access](const S& s) { return nlohmann::json(bool(std::invoke(access, s))); };
@@ -215,7 +217,7 @@ struct Rows {
     row.default_text = [access](const S& s) {
       const nlohmann::json json = json_of(std::invoke(access, s));
       if (json == "auto" || json == 0) return std::string();
-      return json.is_number_float() ? fmt::format("{}", json.get<double>()) : json.dump();
+      return json.is_number_float() ? fmt::format("{}", json.get<double>()) : json_text(json);
     };
     return row;
   }

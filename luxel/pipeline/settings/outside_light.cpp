@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/import/environment.h"
 #include "luxel/pipeline/settings/comma_list.h"
 #include "luxel/pipeline/settings/needs_day.h"
@@ -104,7 +105,7 @@ json numbers(std::initializer_list<float> values) {
 /// "FILE,rotate,scale" from what bake.json holds. Errors: it holds something else.
 Result<std::string> environment_text(const json& e) {
   if (!e.is_object() || !e.contains("file"))
-    return fail(ErrorCode::bad_setting, "--environment: {} names no file", e.dump());
+    return fail(ErrorCode::bad_setting, "--environment: {} names no file", json_text(e));
   return fmt::format("{},{},{}", e["file"].get<std::string>(), e.value("rotation_deg", 0.0),
                      e.value("scale", 1.0));
 }
@@ -141,7 +142,7 @@ Option<L> sky_option() {
           .never_with({"--background", "--sun", "--environment"});
   row.read_json = [read = row.read_text](L& s, const json& value) -> Status {
     if (!value.is_object())
-      return fail(ErrorCode::bad_setting, "--sky: {} is not a sky", value.dump());
+      return fail(ErrorCode::bad_setting, "--sky: {} is not a sky", json_text(value));
     LUXEL_TRY_STATUS(
         read(s, fmt::format("{},{},{}", value.value("azimuth_deg", 0.0),
                             value.value("elevation_deg", 45.0), value.value("turbidity", 2.0))));

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "luxel/base/file.h"
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/view/model/bookmarks.h"
 #include "luxel/view/model/scene_events.h"
 #include "luxel/view/model/tool_events.h"
@@ -209,7 +209,7 @@ Result<Play> parse_play(std::string_view text, const std::string& name) {
       const auto event = event_of(from);
       if (!event)
         return fail(ErrorCode::bad_input, "{}, event {}: {} is not an event", name, number,
-                    short_message(from.dump(-1, ' ', true, json::error_handler_t::replace)));
+                    short_message(json_text(from)));
       if (!(at >= last && at <= out.end_s))
         return fail(ErrorCode::bad_input, "{}, event {}: its time, {}, is not from {} to {}", name,
                     number, at, last, out.end_s);

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/file.h"
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/scene/held_range.h"
 
 namespace luxel::view {
@@ -180,7 +180,7 @@ std::string json_of(const Habits& habits) {
   if (habits.window) out["window"] = *habits.window;
   for (const SubjectHabits& subject : habits.recent) out["recent"].push_back(json_of(subject));
   // Names of files need not be UTF-8.
-  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 SubjectHabits subject_of(const Habits& habits, const std::string& path) {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/file.h"
-#include "luxel/base/short_message.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/image/codec.h"
 
 namespace luxel::view {

@@ -4,6 +4,7 @@
 
 #include "luxel/base/digest.h"
 #include "luxel/base/file.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/command/relight_options.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/solve/matrix/lxr.h"
@@ -23,9 +24,7 @@ json made_of(const scene::Scene& scene, const pipeline::RelightSettings& setting
 }
 
 /// Names of things may be no UTF-8, which JSON knows nothing else of.
-std::string text_of_made(const json& made) {
-  return made.dump(1, ' ', false, json::error_handler_t::replace);
-}
+std::string text_of_made(const json& made) { return json_text(made, 1); }
 
 std::string digest_of_file(std::span<const std::byte> bytes) {
   Digest digest;

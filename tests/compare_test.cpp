@@ -197,6 +197,28 @@ TEST(Compare, APixelThatIsNoNumberIsNamed) {
   }
 }
 
+// The pages of a bake have the names that luxel gives them: a stranger's bake.json opens no file
+// elsewhere, and none a million times.
+TEST(Compare, PagesLieInTheFolderOfTheBake) {
+  const ScratchFolder s;
+  std::filesystem::create_directories(s.path / "bake");
+  s.write("outside.exr", exr(grey(1)));
+  const auto refused_with = [&](const std::string& first, const std::string& second) {
+    s.write("bake/bake.json",
+            R"({"atlas": {"pages": [{"file": ")" + first + R"("}, {"file": ")" + second + "\"}]}}");
+    return compare(s.path / "bake", s.path / "bake");
+  };
+  for (const char* name : {"lightmap-0.exr", "lightmap-1.exr"})
+    s.write("bake/" + std::string(name), exr(grey(1)));
+  EXPECT_EQ(refused_with("lightmap-0.exr", "lightmap-1.exr").code, 0);
+  for (const std::string& other : {std::string("../outside.exr"), (s.path / "outside.exr").string(),
+                                   std::string("lightmap-0.exr")}) {
+    const CommandResult refused = refused_with("lightmap-0.exr", other);
+    EXPECT_EQ(refused.code, 1) << other;
+    EXPECT_THAT(refused.err, HasSubstr("page 1 of 2 is not lightmap-1.exr; bake the scene again"));
+  }
+}
+
 TEST(Compare, BadSettings) {
   const ScratchFolder s;
   const auto a = s.write("a.exr", exr(grey(1)));

@@ -17,10 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder stands for the lightmap of the bake in it, or for all its pages.
-std::vector<fs::path> picture_files(const fs::path& path) {
+Result<std::vector<fs::path>> picture_files(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return lightmaps_in(path);
-  return {path};
+  return std::vector{path};
 }
 
 /// Pages below one another, with nothing beside the smaller ones.
@@ -43,7 +43,7 @@ image::Image stacked(const std::vector<Picture>& pages) {
 
 /// What a file shows, or what all lightmaps of a folder show.
 Result<Picture> read_subject(const fs::path& path) {
-  const std::vector<fs::path> files = picture_files(path);
+  LUXEL_TRY(const std::vector<fs::path> files, picture_files(path));
   std::vector<Picture> pages;
   for (const fs::path& file : files) {
     LUXEL_TRY(Picture page, read_picture(file));
@@ -60,7 +60,8 @@ Result<Picture> read_subject(const fs::path& path) {
 Status check(const CompareSettings& s) {
   for (const fs::path& path : {s.a, s.b}) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored) && !fs::exists(picture_files(path).front(), ignored))
+    LUXEL_TRY(const std::vector<fs::path> files, picture_files(path));
+    if (fs::is_directory(path, ignored) && !fs::exists(files.front(), ignored))
       return fail(
           ErrorCode::bad_input,
           "{} is a folder without lightmap.exr; give a picture or the output folder of a bake",

@@ -85,16 +85,22 @@ Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
   return out;
 }
 
-std::vector<std::filesystem::path> lightmaps_in(const std::filesystem::path& folder) {
+Result<std::vector<std::filesystem::path>> lightmaps_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> out;
-  if (const auto text = read_file(folder / "bake.json")) {
+  const std::filesystem::path report = folder / "bake.json";
+  if (const auto text = read_file(report)) {
     const char* begin = reinterpret_cast<const char*>(text->data());
     const auto json = nlohmann::json::parse(begin, begin + text->size(), nullptr, false);
     const nlohmann::json::json_pointer where("/atlas/pages");
-    if (json.contains(where))
-      for (const nlohmann::json& page : json[where])
-        if (page.contains("file") && page["file"].is_string())
-          out.push_back(folder / page["file"].get<std::string>());
+    const nlohmann::json pages = json.contains(where) ? json[where] : nlohmann::json();
+    // A stranger's could name files elsewhere, or one file a million times.
+    for (size_t p = 0; pages.is_array() && p < pages.size(); ++p) {
+      const std::string name = export_::lightmap_name(p, pages.size()) + ".exr";
+      if (!pages[p].is_object() || pages[p].value("file", nlohmann::json()) != name)
+        return fail(ErrorCode::bad_input, "{}: page {} of {} is not {}; bake the scene again",
+                    report.string(), p, pages.size(), name);
+      out.push_back(folder / name);
+    }
   }
   if (out.empty()) out.push_back(folder / "lightmap.exr");
   return out;

@@ -45,7 +45,7 @@ Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
                                      std::span<const std::vector<std::byte>> exr_files = {});
 
 /// The lightmaps of the bake in `folder`, as bake.json lists them; lightmap.exr where it lists none
-/// or is not there.
-std::vector<std::filesystem::path> lightmaps_in(const std::filesystem::path& folder);
+/// or is not there. Errors: it lists files with other names than those of a bake.
+Result<std::vector<std::filesystem::path>> lightmaps_in(const std::filesystem::path& folder);
 
 }  // namespace luxel::pipeline

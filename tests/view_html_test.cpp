@@ -17,7 +17,9 @@
 namespace luxel::testing_support {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 bool has_command(const char* name) {
   return std::system((std::string("command -v ") + name + " >/dev/null 2>&1").c_str()) == 0;
@@ -172,6 +174,16 @@ scene::Scene one_of_each() {
   return scene;
 }
 
+/// A copy of a page as it would be if a name could become markup.
+std::string with_a_script(const std::filesystem::path& page) {
+  std::string html = slurp(page);
+  html.insert(html.find("<body>") + 6,
+              "<script>console.log('the script ran')</script><p style='display:none' hidden></p>");
+  const std::filesystem::path copy = page.parent_path() / ("script-" + page.filename().string());
+  std::ofstream(copy, std::ios::binary) << html;
+  return copy.string();
+}
+
 class ViewHtml : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -208,10 +220,31 @@ TEST_F(ViewHtml, ShowsWhatThePreviewShows) {
     if (!bake(scene_file(name), s.path / name, "--resolution 256 --samples 32")) return;
     pages.push_back(page_of(s.path / name));
   }
+  // The report of `luxel compare`, and both pages with a script and a style of somebody else's.
+  const std::filesystem::path box = s.path / names[0];
+  ASSERT_EQ(
+      luxel("compare " + box.string() + " " + box.string() + " --quiet --report " + box.string())
+          .code,
+      0);
+  pages.push_back({(box / "report.html").string(), pages[0].like});
+  pages.push_back({with_a_script(box / "report.html"), pages[0].like});
+  pages.push_back({with_a_script(box / "view.html") + "#bare", pages[0].like});
   const std::vector<Shot> shots = shoot(pages);
-  for (size_t k = 0; k < shots.size(); ++k) {
+  for (size_t k = 0; k < names.size(); ++k)
     expect_same(difference(shots[k].picture, pages[k].like, 3, every_pixel), names[k].c_str());
-    EXPECT_EQ(shots[k].page["requests"], nlohmann::json::array()) << "the page fetched something";
+  EXPECT_EQ(shots[4].picture.data, shots[0].picture.data) << "works as before";
+  for (size_t k = 0; k < shots.size(); ++k) {
+    const Shot& shot = shots[k];
+    EXPECT_EQ(shot.page["requests"], nlohmann::json::array()) << "the page fetched something";
+    const std::string said = shot.page["messages"].dump();
+    EXPECT_THAT(said, Not(HasSubstr("the script ran")));
+    if (k < 3) {
+      EXPECT_THAT(said, Not(HasSubstr("Content Security Policy"))) << pages[k].url;
+    } else {
+      EXPECT_THAT(said, AllOf(HasSubstr("script-src"), HasSubstr("style-src"),
+                              HasSubstr("Content Security Policy")))
+          << pages[k].url;
+    }
   }
 }
 

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "luxel/base/base64.h"
+#include "luxel/base/sha256.h"
 #include "luxel/export/plot.h"
+#include "luxel/image/codec.h"
 
 namespace luxel::export_ {
 namespace {
@@ -31,8 +34,8 @@ img.small{image-rendering:pixelated}
 figcaption{margin-top:.5rem;font-size:.9rem}
 .legend{display:flex;flex-wrap:wrap;gap:.25rem 1rem;margin-top:.35rem;font-size:.8rem;color:var(--soft)}
 .legend span{display:inline-flex;align-items:center;gap:.4rem}
-.legend i{display:inline-block;width:.8rem;height:.8rem;border-radius:2px}
-.legend i.wide{width:12rem;max-width:50vw}
+figure img.key{display:inline-block;width:.8rem;height:.8rem;border-radius:2px}
+figure img.wide{width:12rem;max-width:50vw}
 )";
 
 using Out = std::back_insert_iterator<std::string>;
@@ -40,10 +43,15 @@ using Out = std::back_insert_iterator<std::string>;
 void write_legend(const std::vector<LegendEntry>& legend, Out out) {
   if (legend.empty()) return;
   fmt::format_to(out, "<div class=\"legend\">");
-  for (const LegendEntry& e : legend)
-    fmt::format_to(out, "<span><i{} style=\"background:{}\"></i>{}</span>",
-                   e.wide ? " class=\"wide\"" : "", escape_xml(e.css_background),
-                   escape_xml(e.label));
+  for (const LegendEntry& e : legend) {
+    // A picture, since a style of one element's own is what the page's policy forbids.
+    image::Image8 swatch{int(e.colors.size()), 1, 3, {}};
+    for (const image::Color8& c : e.colors)
+      swatch.data.insert(swatch.data.end(), c.begin(), c.end());
+    fmt::format_to(
+        out, "<span><img class=\"key{}\" alt=\"\" src=\"data:image/png;base64,{}\">{}</span>",
+        e.colors.size() > 1 ? " wide" : "", base64(image::encode_png(swatch)), escape_xml(e.label));
+  }
   fmt::format_to(out, "</div>");
 }
 
@@ -69,13 +77,27 @@ void write_section(const Section& section, Out out) {
   fmt::format_to(out, "</div>\n</section>\n");
 }
 
-}  // namespace
+/// Hashes of the different style elements in a page, as its policy lists them. Text of others
+/// cannot make one: it is escaped.
+std::string style_hashes(std::string_view page) {
+  constexpr std::string_view kBegin = "<style>", kEnd = "</style>";
+  std::vector<std::string_view> styles;
+  for (size_t at = 0; (at = page.find(kBegin, at)) != page.npos;) {
+    at += kBegin.size();
+    const std::string_view style = page.substr(at, page.find(kEnd, at) - at);
+    if (std::ranges::find(styles, style) == styles.end()) styles.push_back(style);
+  }
+  std::string out;
+  for (const std::string_view style : styles)
+    out += fmt::format(" 'sha256-{}'", base64(sha256(style)));
+  return out;
+}
 
-std::string html(const ReportPage& page) {
+/// All behind the policy.
+std::string content(const ReportPage& page) {
   std::string text;
   const Out out(text);
   fmt::format_to(out,
-                 "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                  "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
                  "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
                  escape_xml(page.title), kStyle);
@@ -89,6 +111,17 @@ std::string html(const ReportPage& page) {
   for (const Section& section : page.sections) write_section(section, out);
   fmt::format_to(out, "</body>\n</html>\n");
   return text;
+}
+
+}  // namespace
+
+std::string html(const ReportPage& page) {
+  const std::string text = content(page);
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+      "style-src{}\">\n{}",
+      style_hashes(text), text);
 }
 
 }  // namespace luxel::export_

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "luxel/image/false_color.h"
+
 namespace luxel::export_ {
 
-/// A colour ramp or single colours under a picture, with words.
+/// A colour, or a ramp of several from left to right, under a picture, with words.
 struct LegendEntry {
-  std::string css_background;  ///< of the swatch: a colour or a gradient
+  std::vector<image::Color8> colors;
   std::string label;
-  bool wide = false;  ///< a ramp rather than a dot
 };
 
 /// One picture (PNG) or plot (SVG) and what stands under it.
@@ -37,7 +38,8 @@ struct ReportPage {
 };
 
 /// A complete HTML page: pictures inside it as data URIs, no script, no link to anywhere, readable
-/// in light and dark and without a network. All text is escaped.
+/// in light and dark and without a network. All text is escaped. Its Content-Security-Policy allows
+/// no script, and no style but those that are in it [CSP Level 3, section 8.3].
 std::string html(const ReportPage& page);
 
 }  // namespace luxel::export_

@@ -19,7 +19,7 @@ ReportPage page_with(const std::string& word) {
   Panel picture;
   picture.caption = word;
   picture.png = bytes({'f', 'o', 'o'});
-  picture.legend = {{"#123456", word, false}, {word, "ramp", true}};
+  picture.legend = {{{{18, 52, 86}}, word}, {{{0, 0, 0}, {255, 255, 255}}, "ramp"}};
   page.sections[0].panels = {picture};
   return page;
 }
@@ -39,7 +39,7 @@ TEST(HtmlReport, PicturesAreInside) {
   EXPECT_THAT(html(page), HasSubstr("<img alt=\"w\" src=\"data:image/png;base64,Zm9v\">"));
   page.sections[0].panels[0].svg = "<svg></svg>";
   EXPECT_THAT(html(page), HasSubstr("<figure><svg></svg><figcaption>"));
-  EXPECT_THAT(html(page), Not(HasSubstr("<img")));
+  EXPECT_THAT(html(page), Not(HasSubstr("<figure><img")));
 }
 
 /// Every element that is opened is closed, in order.

@@ -163,7 +163,8 @@ TEST_F(ViewPageTest, KeepsTheLicenceOfThreeAndForbidsTheNetwork) {
   const std::string page = html("box");
   EXPECT_THAT(page, HasSubstr("three.js authors"));
   EXPECT_THAT(page, HasSubstr("The above copyright notice and this permission notice shall be"));
-  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page, HasSubstr("default-src 'none'; script-src 'sha256-"));
+  EXPECT_THAT(page, Not(HasSubstr("unsafe-")));
   for (const char* link : {"src=\"http", "href=\"http", "src=\"//", "@import", "url(http"})
     EXPECT_THAT(page, Not(HasSubstr(link)));
 }

@@ -5,11 +5,8 @@
 #include <exception>
 #include <new>
 
-<<<<<<< HEAD
 #include "luxel/base/process_memory.h"
-=======
 #include "luxel/base/shown_text.h"
->>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 #include "luxel/scene/sides.h"
@@ -105,21 +102,13 @@ Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
     if (!read && says_no_memory(read.error())) return source.memory.used_up(source.name);
     LUXEL_TRY(Imported imported, std::move(read));
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
-<<<<<<< HEAD
-    make_names_utf8(imported);
-    const std::vector<scene::Instance> instances = imported.scene.instances;
-=======
     make_names_utf8(imported.scene);
-    const std::vector<scene::Instance> read = imported.scene.instances;
->>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
+    const std::vector<scene::Instance> instances = imported.scene.instances;
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     keep_nodes(instances, imported);
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
-<<<<<<< HEAD
     cut(imported.warnings, source.name);
-=======
     for (std::string& warning : imported.warnings) warning = valid_utf8(warning);
->>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
     const float crease_rad = crease_deg(source, imported, params) * kPi / 180;
     for (scene::Mesh& mesh : imported.scene.meshes) scene::smooth_normals(mesh, crease_rad);
     scene::link_sides(imported.scene);
@@ -160,12 +149,8 @@ Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& n
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
                             const ImportParams& params) {
   ReadingMemory memory(0);
-<<<<<<< HEAD
   const MemoryLimit limit(memory.left_bytes());
-  return read_checked({name, name, ".glb", {}, memory, std::move(bytes)}, params);
-=======
   return read_checked({name, shown_text(name), ".glb", {}, memory, std::move(bytes)}, params);
->>>>>>> c526c2b5 (Text of strangers is shown by one function, and JSON is written by one: no name steers a terminal or ends a command)
 }
 
 }  // namespace luxel::import

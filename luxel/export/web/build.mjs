@@ -3,6 +3,7 @@
 // Runs in a folder with node_modules beside it (export/web/bundle.cmake makes one in the build
 // folder, so that the sources stay clean).
 import { build } from "esbuild";
+import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
 
 const read = (name) => readFile(new URL(name, import.meta.url), "utf8");
@@ -28,7 +29,13 @@ const { outputFiles } = await build({
   bundle: true, minify: true, write: false, format: "iife", target: "es2022", legalComments: "none",
   banner: { js: `/*!\nThis page contains three.js ${version}, https://threejs.org\n\n${licence.trim()}\n*/` },
 });
-const page = (await read("page.html")).replace("//bundle", () => outputFiles[0].text.trim());
+const bundled = (await read("page.html")).replace("//bundle", () => outputFiles[0].text.trim());
+/** As a Content-Security-Policy names the page's only script or style: any other is not run. */
+function hash(element) {
+  const [, text] = bundled.match(new RegExp(`<${element}>([^]*?)</${element}>`));
+  return `sha256-${createHash("sha256").update(text).digest("base64")}`;
+}
+const page = bundled.replace("script-hash", () => hash("script")).replace("style-hash", () => hash("style"));
 const [before, after] = page.split("<!--data-->");
 await writeFile(process.argv[2], `// Made by export/web/build.mjs.
 #include "luxel/export/view_template.h"

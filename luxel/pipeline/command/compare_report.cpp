@@ -15,17 +15,16 @@ using export_::LegendEntry;
 using export_::Panel;
 using export_::Section;
 
-std::string css(image::Color8 c) { return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]); }
-
 LegendEntry ramp_legend(std::string label) {
-  std::vector<std::string> colors;
-  for (int i = 0; i <= 16; ++i) colors.push_back(css(image::false_color(i / 16.0)));
-  return {fmt::format("linear-gradient(90deg,{})", fmt::join(colors, ",")), std::move(label), true};
+  constexpr int kColors = 128;
+  LegendEntry out{{}, std::move(label)};
+  for (int i = 0; i < kColors; ++i) out.colors.push_back(image::false_color((i + 0.5) / kColors));
+  return out;
 }
 
 LegendEntry empty_legend(const image::Mask& covered) {
   const bool all = std::find(covered.begin(), covered.end(), 0) == covered.end();
-  return all ? LegendEntry{} : LegendEntry{"#808080", "not compared", false};
+  return all ? LegendEntry{} : LegendEntry{{{128, 128, 128}}, "not compared"};
 }
 
 /// Up to the next of 1, 2, 5 times a power of ten.
@@ -129,7 +128,7 @@ Section contour_section(const Measured& in, std::span<const uint8_t> bright_a,
   const size_t count = image::kContourLevels.size();
   for (size_t k = 0; k < count; ++k)
     legend.push_back(
-        {css(image::contour_color(k, count)), fmt::format("{}", image::kContourLevels[k]), false});
+        {{image::contour_color(k, count)}, fmt::format("{}", image::kContourLevels[k])});
   legend.push_back(empty_legend(in.covered));
   for (const auto& bright : {bright_a, bright_b}) {
     const int width = in.shown_a.width;

@@ -38,7 +38,7 @@ const std::vector<std::vector<std::string>> kBesideTheSolver{
     {"--ambient-occlusion", "--attach", "--directional", "--formats", "--html", "--no-stitch",
      "--probes", "--shadow-mask", "--texels", "--view"},
     {"--background", "--environment", "--json", "--progress-json", "--quiet", "--search-path",
-     "--smooth-normals", "--sun", "--trust-paths"},
+     "--smooth-normals", "--sun", "--trust-paths", "--any-format"},
 };
 
 const Options kSmallGather{{"--resolution", "16"}, {"--samples", "4"}, {"--direct-samples", "2"}};
@@ -171,6 +171,7 @@ Options values_of(const Inputs& in) {
       {"--time-budget", "5"},
       {"--to", "'wall and floor'"},
       {"--trust-paths", ""},
+      {"--any-format", ""},
       {"--unit", "m"},
       {"--up", "y"},
       {"--tolerance", "0.01"},

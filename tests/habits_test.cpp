@@ -273,6 +273,7 @@ TEST_F(OptionFiles, SayWhatIsWrongAndWhere) {
         std::pair{"[bake\n", "luxel.toml, line 1: "},
         std::pair{"[bake]\noutput = \"/tmp\"\n", "output belongs on the command line"},
         std::pair{"[bake]\ntrust-paths = true\n", "trust-paths belongs on the command line, or in"},
+        std::pair{"[bake]\nany-format = true\n", "any-format belongs on the command line, or in"},
         std::pair{"[bake]\nsearch-path = \"/usr\"\n", "/usr lies outside this file's folder"},
         std::pair{"[bake]\nies = [\"lamp=../above.ies\"]\n", "../above.ies lies outside"},
         std::pair{"[bake]\nenvironment = \"out/../../above.ies\"\n", " does not exist"},

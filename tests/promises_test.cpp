@@ -146,11 +146,12 @@ std::string deep_b3d(uint32_t depth) {
 TEST(StackOverflow, IsASentence) {
   const ScratchFolder s;
   const std::string file = s.write("deep.b3d", deep_b3d(100000)).string();
-  const CommandResult r = luxel("bake " + file + " --json -o " + (s.path / "b").string());
+  const CommandResult r =
+      luxel("bake --any-format " + file + " --json -o " + (s.path / "b").string());
   EXPECT_EQ(r.code, 1);
   EXPECT_EQ(files_in(s.path), std::set<std::string>{"deep.b3d"});
   EXPECT_THAT(r.err,
-              HasSubstr("luxel: the stack is full; the parts of a file are nested too deeply"));
+              HasSubstr("deep.b3d: the stack is full; the parts of a file are nested too deeply"));
   EXPECT_THAT(r.out, HasSubstr("\"exit_code\": 1"));
 }
 

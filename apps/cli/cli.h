@@ -36,7 +36,8 @@ struct Common {
 /// Adds them as the last options of a command, whose SCENE is there by then.
 void add_common(CLI::App& command, Common& common);
 
-/// --smooth-normals, --up, --unit, --search-path, --trust-paths.
+/// --smooth-normals, --up, --unit, --search-path, --trust-paths,
+/// --any-format.
 std::vector<CLI::Option*> add_import(CLI::App& command, Given& given);
 /// --background, --sun, --environment, --sky and --ies.
 std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);
@@ -103,6 +104,7 @@ void register_compare(CLI::App& app, Action& action);
 void register_factors(CLI::App& app, Action& action);
 void register_relight(CLI::App& app, Action& action);
 void register_doctor(CLI::App& app, Action& action);
+void register_import_any(CLI::App& app, Action& action);
 
 /// Registers the program's commands: all in luxel, bench alone in luxel-bench.
 void register_commands(CLI::App& app, Action& action);

@@ -53,6 +53,7 @@ void register_commands(CLI::App& app, Action& action) {
   register_relight(app, action);
   register_bench(app, action);
   register_doctor(app, action);
+  register_import_any(app, action);
 }
 
 }  // namespace luxel::cli

@@ -1,5 +1,5 @@
 // A last net under the readers of other libraries. luxel checks depth before it gives them a file,
-// where it knows the format; the stack may still overflow in the others, as in packed ones.
+// where it knows the format; the stack may still overflow in the others (--any-format).
 #include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>

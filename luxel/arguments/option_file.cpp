@@ -23,8 +23,8 @@ constexpr std::array<std::string_view, 14> kNotForFiles{
     "help", "output", "settings", "json", "progress-json", "quiet",  "from",
     "play", "script", "report",   "plan", "part",          "resume", "devices"};
 /// What a stranger's file does not say: whom to trust, and what of this machine to use.
-constexpr std::array<std::string_view, 5> kOnlyWhenNamed{"trust-paths", "max-memory", "threads",
-                                                         "processes-per-node", "device"};
+constexpr std::array<std::string_view, 6> kOnlyWhenNamed{
+    "trust-paths", "any-format", "max-memory", "threads", "processes-per-node", "device"};
 /// If the command line gives the first, the file's second is left out.
 struct Rival {
   std::string_view given, left_out;

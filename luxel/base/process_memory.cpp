@@ -13,15 +13,14 @@ namespace luxel {
 
 namespace {
 
-/// Resident pages of the process, and of those that are files'.
-struct ResidentPages {
-  uint64_t all = 0, of_files = 0;
+/// Pages of the process: with addresses, resident, and of the latter those that are files'.
+struct Pages {
+  uint64_t total = 0, resident = 0, of_files = 0;
 };
-ResidentPages resident_pages() {
+Pages pages() {
   std::ifstream in("/proc/self/statm");
-  uint64_t total = 0;
-  ResidentPages out;
-  in >> total >> out.all >> out.of_files;
+  Pages out;
+  in >> out.total >> out.resident >> out.of_files;
   return out;
 }
 
@@ -41,8 +40,9 @@ uint64_t stated_bytes(const char* file, const std::string& key) {
 
 }  // namespace
 
-uint64_t resident_bytes() { return resident_pages().all * page_bytes(); }
-uint64_t resident_file_bytes() { return resident_pages().of_files * page_bytes(); }
+uint64_t resident_bytes() { return pages().resident * page_bytes(); }
+uint64_t resident_file_bytes() { return pages().of_files * page_bytes(); }
+uint64_t virtual_bytes() { return pages().total * page_bytes(); }
 
 uint64_t peak_resident_bytes() {
   rusage usage{};

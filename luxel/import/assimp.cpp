@@ -4,6 +4,9 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <assimp/BaseImporter.h>
+#include <assimp/importerdesc.h>
+
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
@@ -13,8 +16,10 @@
 #include "luxel/image/color.h"
 #include "luxel/import/assimp_files.h"
 #include "luxel/import/assimp_parts.h"
+#include "luxel/import/format.h"
 #include "luxel/import/nesting.h"
 #include "luxel/import/ply.h"
+#include "luxel/import/text_lines.h"
 
 namespace Assimp {
 /// Debian's Assimp is built with its assertions, and a wrong .fbx or .x that meets one would end
@@ -157,10 +162,24 @@ void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const
   }
 }
 
-/// Assimp's readers of its own dump and of X3D trust every size in the file: a damaged one ends the
-/// process.
-bool is_trusting(std::string_view extension) {
-  return extension == ".assbin" || extension == ".x3d" || extension == ".x3db";
+/// Whether a reader of Assimp is one for the ending of `path`. It names several, such as "mesh
+/// mesh.xml".
+bool is_for(const aiImporterDesc& reader, const std::string& path) {
+  std::string_view endings = reader.mFileExtensions;
+  for (std::string_view one = next_word(endings); !one.empty(); one = next_word(endings))
+    if (lower_case(path).ends_with(fmt::format(".{}", one))) return true;
+  return false;
+}
+
+/// Leaves Assimp only the readers for the file's ending. It would ask all others whether the
+/// content is theirs when these refuse it, and they trust what they find.
+void keep_readers(Assimp::Importer& importer, const std::string& path) {
+  for (size_t i = importer.GetImporterCount(); i-- > 0;) {
+    if (is_for(*importer.GetImporterInfo(i), path)) continue;
+    Assimp::BaseImporter* reader = importer.GetImporter(i);
+    importer.UnregisterLoader(reader);
+    delete reader;
+  }
 }
 
 /// Assimp's reader, its checks, and triangles alone: points and lines are sorted out.
@@ -168,7 +187,7 @@ Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFi
                                       std::vector<std::string>& warnings) {
   // The scene is the importer's and not constant; Assimp says so only for its users' sake.
   const auto own = [&] { return const_cast<aiScene*>(importer.GetScene()); };
-  const std::string path = source.path.string();
+  const std::string path = path_for_assimp(source);
   constexpr unsigned kCheck = aiProcess_ValidateDataStructure;
   if (importer.ReadFile(path, kCheck) == nullptr && source.extension == ".fbx" &&
       is_about_names(importer.GetErrorString()) && importer.ReadFile(path, 0) != nullptr) {
@@ -182,22 +201,21 @@ Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFi
 
 /// What Assimp gets in the place of a file that its reader could misread.
 struct Rewritten {
-  PlainPly ply;
-  std::optional<std::string> text;  ///< of .x, .dae and .stl files
+  std::optional<std::string> text;
   DVec3 near = {};                  ///< what vertices are relative to
+  bool has_display_colors = false;  ///< PlainPly's
 };
 
 /// Checks a file by its own rules, and writes it anew where Assimp needs that.
 Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& warnings) {
   Rewritten out;
-  LUXEL_TRY_STATUS(check_nesting(source));
-  LUXEL_TRY_STATUS(check_packed(source));
   if (source.extension == ".ply") {
-    LUXEL_TRY(out.ply, write_plain_ply(source, warnings));
-    out.near = out.ply.near;
+    LUXEL_TRY(PlainPly plain, write_plain_ply(source, warnings));
+    out = {std::move(plain.text), plain.near, plain.has_display_colors};
   } else if (source.extension == ".x") {
     LUXEL_TRY(out.text, write_plain_x(source, out.near));
   } else if (source.extension == ".dae") {
+    LUXEL_TRY_STATUS(check_nesting(source));
     LUXEL_TRY_STATUS(check_collada(source));
     LUXEL_TRY(out.text, write_plain_collada(source, out.near));
   } else if (source.extension == ".stl") {
@@ -208,60 +226,42 @@ Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& wa
   return out;
 }
 
-FilesForAssimp* files_for_assimp(const SourceFile& source, const Rewritten& rewritten) {
-  auto* files = new FilesForAssimp(source);
-  if (source.extension == ".ply") files->replace(source.path, rewritten.ply.text);
-  if (rewritten.text) files->replace(source.path, *rewritten.text);
-  return files;
-}
-
-std::vector<std::string> known_extensions() {
-  Assimp::Importer importer;
-  aiString list;  // "*.3d;*.3ds;..."
-  importer.GetExtensionList(list);
-  std::vector<std::string> extensions{".gltf", ".glb"};
-  std::string text = list.C_Str();
-  for (size_t at = 0; at < text.size();) {
-    const size_t end = std::min(text.find(';', at), text.size());
-    if (end > at + 1) extensions.push_back(text.substr(at + 1, end - at - 1));
-    at = end + 1;
-  }
-  std::erase_if(extensions, is_trusting);
-  std::sort(extensions.begin(), extensions.end());
-  extensions.erase(std::unique(extensions.begin(), extensions.end()), extensions.end());
-  return extensions;
-}
-
 }  // namespace
 
-Status check_extension(const SourceFile& source) {
-  if (source.extension == ".gltf" || source.extension == ".glb") return {};
-  const std::vector<std::string> known = known_extensions();
-  if (std::find(known.begin(), known.end(), source.extension) != known.end()) return {};
-  std::string list;
-  for (const std::string& extension : known) list += " " + extension;
-  return fail(ErrorCode::unsupported, "{}: files ending in '{}' cannot be read; these can:{}",
-              source.name, source.extension, list);
+std::string name_in_assimp(const std::filesystem::path& path) {
+  const Assimp::Importer importer;
+  for (size_t i = 0; i < importer.GetImporterCount(); ++i) {
+    const aiImporterDesc& reader = *importer.GetImporterInfo(i);
+    if (!is_for(reader, path.string())) continue;
+    // "Blender 3D Importer (http://www.blender3d.org)"
+    const std::string name = reader.mName;
+    return name.substr(0, std::min(name.find(" Importer"), name.find(" Reader")));
+  }
+  return {};
 }
 
 Result<Imported> read_with_assimp(const SourceFile& source, ExactPlaces& exact) {
   Imported imported;
-  LUXEL_TRY(const Rewritten rewritten, rewrite(source, imported.warnings));
+  LUXEL_TRY(Rewritten rewritten, rewrite(source, imported.warnings));
   Assimp::Importer importer;
-  importer.SetIOHandler(files_for_assimp(source, rewritten));  // which deletes it
+  keep_readers(importer, path_for_assimp(source));
+  importer.SetIOHandler(new FilesForAssimp(source, std::move(rewritten.text)));  // deletes it
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   LUXEL_TRY(const aiScene* in, read_file_with(importer, source, imported.warnings));
-  if (in == nullptr || in->mRootNode == nullptr)
+  if (in == nullptr || in->mRootNode == nullptr) {
+    // Memory that has ended is told from other errors by its type alone.
+    if (const std::exception_ptr& thrown = importer.GetException()) std::rethrow_exception(thrown);
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(importer.GetErrorString()));
+  }
 
   LUXEL_TRY_STATUS(read_assimp_materials(*in, source, imported));
   NodePlaces places;
   const std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), places, exact);
-  const Habits habits{rewritten.ply.has_display_colors, source.extension == ".stl"};
+  const Habits habits{rewritten.has_display_colors, source.extension == ".stl"};
   add_instances(*in, drawn, habits, rewritten.near, imported.scene, exact);
   exact.is_relative = rewritten.near != DVec3{};
   add_assimp_lights(*in, source, places, imported, exact);

@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "luxel/import/text_lines.h"
+
 namespace luxel::import {
 namespace {
 
@@ -23,6 +25,11 @@ class Stream : public Assimp::MemoryIOStream {
 
 }  // namespace
 
+std::string path_for_assimp(const SourceFile& source) {
+  const bool is_named_so = lower_case(source.path.extension().string()) == source.extension;
+  return source.path.string() + (is_named_so ? "" : source.extension);
+}
+
 std::string FilesForAssimp::stated(const char* file) const {
   const std::filesystem::path relative =
       std::filesystem::path(file).lexically_relative(source_.path.parent_path());
@@ -30,7 +37,7 @@ std::string FilesForAssimp::stated(const char* file) const {
 }
 
 bool FilesForAssimp::Exists(const char* file) const {
-  if (source_.path == file || texts_.contains(file)) return true;
+  if (own_ == file) return true;
   return find_named_file(source_.files, stated(file), source_.name).has_value();
 }
 
@@ -39,8 +46,7 @@ Assimp::IOStream* FilesForAssimp::Open(const char* file, const char* mode) {
   const auto stream_over = [&](const auto& bytes) {
     return new Stream(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), false, open_);
   };
-  if (const auto text = texts_.find(file); text != texts_.end()) return stream_over(text->second);
-  if (source_.path == file) return stream_over(source_.bytes);
+  if (own_ == file) return text_ ? stream_over(*text_) : stream_over(source_.bytes);
   const auto bytes = read_named_file(source_.files, stated(file), source_.name, source_.memory);
   if (!bytes) return nullptr;
   auto* copy = new uint8_t[bytes->size()];

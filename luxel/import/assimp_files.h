@@ -3,7 +3,7 @@
 
 #include <assimp/IOSystem.hpp>
 
-#include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -11,18 +11,19 @@
 
 namespace luxel::import {
 
-/// Gives Assimp the scene's file from memory, texts of ours in the place of others, and of all else
-/// only what a scene may name (scene_files.h). Nothing is written.
+/// What Assimp is told that the scene's file is called: it goes by the ending, luxel by the
+/// content.
+std::string path_for_assimp(const SourceFile& source);
+
+/// Gives Assimp the scene's file from memory, or a text of ours in its place, and of all else only
+/// what a scene may name (scene_files.h). Nothing is written.
 class FilesForAssimp : public Assimp::IOSystem {
  public:
-  explicit FilesForAssimp(const SourceFile& source) : source_(source) {}
+  /// `text`: what the scene's own file holds instead of its bytes.
+  FilesForAssimp(const SourceFile& source, std::optional<std::string> text)
+      : source_(source), own_(path_for_assimp(source)), text_(std::move(text)) {}
   /// Closes what Assimp has left open where it met an error.
   ~FilesForAssimp() override;
-
-  /// `text` instead of the file `path`; the scene's own, or one beside it.
-  void replace(const std::filesystem::path& path, std::string text) {
-    texts_[path.string()] = std::move(text);
-  }
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
@@ -34,7 +35,8 @@ class FilesForAssimp : public Assimp::IOSystem {
   std::string stated(const char* file) const;
 
   const SourceFile& source_;
-  std::map<std::string, std::string> texts_;
+  const std::string own_;
+  const std::optional<std::string> text_;
   std::set<Assimp::IOStream*> open_;  ///< some of Assimp's readers delete theirs without Close()
 };
 

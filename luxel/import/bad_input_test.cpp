@@ -18,7 +18,7 @@ TEST(BadInput, FilesThatAreNone) {
   for (const char* name : {"a.glb", "a.gltf", "a.obj", "a.ply", "a.fbx"})
     EXPECT_THAT(error_of(import_text(name, "")), AllOf(HasSubstr(name), HasSubstr("is empty")));
   EXPECT_THAT(error_of(import_text("a.docx", "x")),
-              AllOf(HasSubstr("'.docx' cannot be read"), HasSubstr(".glb"), HasSubstr(".obj")));
+              AllOf(HasSubstr("its ending '.docx'"), HasSubstr(".glb"), HasSubstr(".obj")));
 }
 
 TEST(BadInput, GarbageUnderEveryName) {

@@ -7,6 +7,8 @@
 
 #include "luxel/base/process_memory.h"
 #include "luxel/base/shown_text.h"
+#include "luxel/import/format.h"
+#include "luxel/import/other_process.h"
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 #include "luxel/scene/sides.h"
@@ -91,7 +93,6 @@ void cut(std::vector<std::string>& warnings, const std::string& file) {
 }
 
 Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
-  LUXEL_TRY_STATUS(check_extension(source));
   LUXEL_TRY(source.world_from_file, world_from_file(source, params));
   source.smooths_by_groups = !params.smooth_normals_deg;
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
@@ -121,20 +122,42 @@ Result<Imported> read_checked(SourceFile source, const ImportParams& params) {
   }
 }
 
+std::string ending_of(const std::filesystem::path& path) {
+  return lower_case(path.extension().string());
+}
+
+Result<SourceFile> open_source(const std::filesystem::path& path, const ImportParams& params,
+                               ReadingMemory& memory) {
+  LUXEL_TRY(std::vector<std::byte> bytes, read_counted(path, memory));
+  const std::string extension = format_of(bytes, ending_of(path));
+  return SourceFile{path,      shown_text(path.string()),
+                    extension, {path.parent_path(), params.search_paths, params.trust_paths},
+                    memory,    std::move(bytes)};
+}
+
 }  // namespace
 
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params,
                               uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
   const MemoryLimit limit(memory.left_bytes());
-  LUXEL_TRY(std::vector<std::byte> bytes, read_counted(path, memory));
-  return read_checked({path,
-                       shown_text(path.string()),
-                       lower_case(path.extension().string()),
-                       {path.parent_path(), params.search_paths, params.trust_paths},
-                       memory,
-                       std::move(bytes)},
-                      params);
+  LUXEL_TRY(SourceFile source, open_source(path, params, memory));
+  if (params.any_format && !is_own_format(source.extension) && !name_in_assimp(path).empty()) {
+    const ProcessLimits limits = usual_limits(source.bytes.size(), max_memory_bytes);
+    source.bytes = {};
+    return import_in_other_process(path, params, limits);
+  }
+  LUXEL_TRY_STATUS(check_format(source));
+  return read_checked(std::move(source), params);
+}
+
+Result<Imported> import_in_this_process(const std::filesystem::path& path,
+                                        const ImportParams& params, uint64_t max_memory_bytes) {
+  ReadingMemory memory(max_memory_bytes);
+  const MemoryLimit limit(memory.left_bytes());
+  LUXEL_TRY(SourceFile source, open_source(path, params, memory));
+  if (name_in_assimp(path).empty()) LUXEL_TRY_STATUS(check_format(source));
+  return read_checked(std::move(source), params);
 }
 
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
@@ -142,15 +165,22 @@ Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& n
   ReadingMemory memory(max_memory_bytes);
   const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY_STATUS(memory.take(bytes.size(), name));
-  const std::string extension = lower_case(std::filesystem::path(name).extension().string());
-  return read_checked({name, shown_text(name), extension, {}, memory, std::move(bytes)}, {});
+  const std::string extension = format_of(bytes, ending_of(name));
+  SourceFile source{name, shown_text(name), extension, {}, memory, std::move(bytes)};
+  LUXEL_TRY_STATUS(check_format(source));
+  return read_checked(std::move(source), {});
+}
+
+Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
+                            const ImportParams& params, ReadingMemory& memory) {
+  return read_checked({name, shown_text(name), ".glb", {}, memory, std::move(bytes)}, params);
 }
 
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
                             const ImportParams& params) {
   ReadingMemory memory(0);
   const MemoryLimit limit(memory.left_bytes());
-  return read_checked({name, shown_text(name), ".glb", {}, memory, std::move(bytes)}, params);
+  return import_glb(std::move(bytes), name, params, memory);
 }
 
 }  // namespace luxel::import

@@ -37,6 +37,8 @@ struct ImportParams {
   /// Folders besides the scene's own in which files may lie that the scene names (scene_files.h).
   std::vector<std::filesystem::path> search_paths{};
   bool trust_paths = false;  ///< files that the scene names may lie anywhere
+  /// Formats that only Assimp knows are read too, in a process of their own (other_process.h).
+  bool any_format = false;
   /// For formats that state neither (OBJ, PLY, STL, .x, ...): the axis that points up, and metres
   /// per unit. Not set: Y, metres. Set for another format: an error (bad_setting).
   std::optional<Up> up{};
@@ -46,15 +48,16 @@ struct ImportParams {
 };
 inline constexpr float kUsualCreaseDeg = 60;
 
-/// Reads .gltf and .glb with tinygltf, .obj with tinyobjloader, everything else that Assimp knows
-/// (.x, .fbx, .dae, .ply, ...) through Assimp. Errors say file, field, value and what to do.
+/// Reads glTF with tinygltf, OBJ with tinyobjloader, and FBX, .x, Collada, PLY and STL through
+/// Assimp. The content decides, whatever the file's name ends in. Errors say file, field, value and
+/// what to do. unsupported: another format, without `any_format`.
 /// out_of_memory: what the file holds needs more than `max_memory_bytes`, which the process may
 /// have while it reads (0: what the machine has free); it is said before it is used.
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params = {},
                               uint64_t max_memory_bytes = 0);
 
 /// Imports a file that lies in memory and names no other. `name` is for messages; its extension
-/// says what the file is.
+/// counts where the content does not say what the file is.
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
                               uint64_t max_memory_bytes = 0);
 

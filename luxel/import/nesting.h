@@ -15,8 +15,7 @@ inline constexpr size_t kDeepestNesting = 1000;
 /// Nodes that Assimp may copy out of others; each copy takes 1.3 kB.
 inline constexpr size_t kMostCopies = 1000000;
 
-/// An error when the blocks or elements of a text format lie in each other more than
-/// kDeepestNesting deep. Formats of which nothing is known pass.
+/// An error when the elements of a .dae file lie in each other more than kDeepestNesting deep.
 Status check_nesting(const SourceFile& source);
 
 struct WrongNesting {

@@ -19,7 +19,7 @@ namespace luxel::import {
 struct SourceFile {
   std::filesystem::path path;
   std::string name;       ///< what messages call it: shown_text()
-  std::string extension;  ///< lower case, with the dot
+  std::string extension;  ///< of its format (format.h): lower case, with the dot
   SceneFiles files;       ///< where files that it names may lie
   ReadingMemory& memory;  ///< what is left for reading it
   std::vector<std::byte> bytes;
@@ -27,8 +27,9 @@ struct SourceFile {
   bool smooths_by_groups = true;  ///< false: by an angle that was asked for
 };
 
-/// An error that lists what can be read when this is not among it.
-Status check_extension(const SourceFile& source);
+/// Imports a binary glTF file, which counts in `memory`.
+Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
+                            const ImportParams& params, ReadingMemory& memory);
 
 /// The readers also say where they have put things, before anything was rounded.
 Result<Imported> read_gltf(const SourceFile& source, ExactPlaces& exact);
@@ -49,8 +50,6 @@ Status check_collada(const SourceFile& source);
 /// Errors: broken XML; UTF-16; memory.
 Result<std::string> write_plain_collada(const SourceFile& source, DVec3& near);
 Status check_fbx(const SourceFile& source);
-/// Checks of a scene in an archive: .zae, .3mf, .zgl, .ifczip.
-Status check_packed(const SourceFile& source);
 
 /// Merges vertices that agree in every bit of every attribute, in the order of their first use.
 void join_identical_vertices(scene::Mesh& mesh);

@@ -1,7 +1,6 @@
 // A text .stl file that lies far from its origin, written anew near it: Assimp would round its
 // numbers to single precision.
-#include <cstring>
-
+#include "luxel/import/format.h"
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 
@@ -20,20 +19,11 @@ std::optional<DVec3> corner_on(std::string_view line) {
   return p;
 }
 
-/// As Assimp tells a binary file: by its size, whatever it begins with.
-bool is_binary(std::string_view file) {
-  constexpr size_t kHead = 80, kFacet = 50;
-  uint32_t facets = 0;
-  if (file.size() < kHead + sizeof facets) return false;
-  std::memcpy(&facets, file.data() + kHead, sizeof facets);
-  return file.size() == kHead + sizeof facets + kFacet * uint64_t(facets);
-}
-
 }  // namespace
 
 Result<std::optional<std::string>> write_near_stl(const SourceFile& source, DVec3& near) {
   const std::string_view text = text_of(source.bytes);
-  if (is_binary(text)) return std::nullopt;
+  if (is_binary_stl(text)) return std::nullopt;
   DBox3 box;
   for (std::string_view rest = text; !rest.empty();)
     if (const auto corner = corner_on(next_line(rest))) box.extend(*corner);

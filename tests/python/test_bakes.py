@@ -42,6 +42,22 @@ class Bakes(unittest.TestCase):
         of_scene = luxel.bake(luxel.load(CORNELL_BOX), **options)
         self.assertTrue(np.array_equal(of_file.lightmap, of_scene.lightmap))
 
+    def test_a_file_that_only_assimp_reads_needs_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "a.off")
+            file.write_text("OFF\n4 2 0\n0 0 0\n2 0 0\n2 0 1\n0 0 1\n3 0 1 2\n3 0 2 3\n")
+            with self.assertRaisesRegex(luxel.Error, "--any-format"):
+                luxel.load(file)
+            path = os.environ["PATH"]
+            try:
+                os.environ["PATH"] = str(pathlib.Path(os.environ["LUXEL"]).resolve().parent) + ":" + path
+                self.assertEqual(len(luxel.load(file, any_format=True).triangles), 2)
+                os.environ["PATH"] = folder + ":."
+                with self.assertRaisesRegex(luxel.Error, "needs the program luxel"):
+                    luxel.load(file, any_format=True)
+            finally:
+                os.environ["PATH"] = path
+
     def test_arrays_are_views_that_outlive_the_bake_and_cannot_be_written(self):
         bake = luxel.bake(cube(emission=1), resolution=32, samples=4)
         for name in ("lightmap", "texel_map", "texels", "irradiance", "error", "texel_corners", "preview"):

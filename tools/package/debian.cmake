@@ -94,6 +94,7 @@ math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-scipy)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS luxel)  # luxel.load(any_format=True)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${debian}/postinst;${debian}/prerm")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "module of luxel for Python
 Bakes, rays, view factors and moving light as numpy arrays, for scripts and

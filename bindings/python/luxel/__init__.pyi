@@ -63,6 +63,7 @@ def load(
     unit: Value | None = ...,  # Unit of lengths in a file that does not say (OBJ, PLY, STL, ...); default: m
     search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
     trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
+    any_format: bool | None = ...,  # Also read formats that only Assimp knows (3DS, Blender, IFC, LightWave, ...), in a process of their own
     # end: load
 ) -> Scene: ...
 
@@ -155,6 +156,7 @@ def bake(
     unit: Value | None = ...,  # Unit of lengths in a file that does not say (OBJ, PLY, STL, ...); default: m
     search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
     trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
+    any_format: bool | None = ...,  # Also read formats that only Assimp knows (3DS, Blender, IFC, LightWave, ...), in a process of their own
     background: Value | None = ...,  # Background radiance as r,g,b
     sun: Value | None = ...,  # Add a sun: azimuth (0 = -Z, 90 = +X), elevation, and illuminance on a surface that faces it
     environment: Value | None = ...,  # Environment map: an equirectangular .hdr or .exr, rotated and scaled
@@ -206,6 +208,7 @@ class Relighter:
         unit: Value | None = ...,  # Unit of lengths in a file that does not say (OBJ, PLY, STL, ...); default: m
         search_path: Values | None = ...,  # Also look in this folder for pictures and buffers that the scene names; repeatable
         trust_paths: bool | None = ...,  # Read the files that the scene names even if they lie outside its folder
+        any_format: bool | None = ...,  # Also read formats that only Assimp knows (3DS, Blender, IFC, LightWave, ...), in a process of their own
         background: Value | None = ...,  # Background radiance as r,g,b
         sun: Value | None = ...,  # Add a sun: azimuth (0 = -Z, 90 = +X), elevation, and illuminance on a surface that faces it
         environment: Value | None = ...,  # Environment map: an equirectangular .hdr or .exr, rotated and scaled

@@ -67,6 +67,12 @@ Options<ImportParams> import_options() {
               "--trust-paths", &ImportParams::trust_paths,
               "Read the files that the scene names even if they lie outside its folder")
               .key_is("")
+              .leaves(Changes::scene),
+          Rows<ImportParams>::toggle(
+              "--any-format", &ImportParams::any_format,
+              "Also read formats that only Assimp knows (3DS, Blender, IFC, LightWave, ...), in a "
+              "process of their own")
+              .key_is("")
               .leaves(Changes::scene)};
 }
 

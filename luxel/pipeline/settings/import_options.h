@@ -6,7 +6,8 @@
 
 namespace luxel::pipeline {
 
-/// --smooth-normals, --up, --unit, --search-path, --trust-paths.
+/// --smooth-normals, --up, --unit, --search-path, --trust-paths,
+/// --any-format.
 Options<import::ImportParams> import_options();
 
 }  // namespace luxel::pipeline

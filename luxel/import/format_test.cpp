@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "luxel/import/other_process.h"
 #include "luxel/import/test_files.h"
 
 namespace luxel::import {
@@ -51,6 +52,15 @@ TEST(Format, TheContentDecides) {
     }
 }
 
+TEST(Format, GltfIsToldFromOthersByItsFirstBytes) {
+  const TemporaryFolder folder;
+  const std::map<std::string, std::string> files = triangle_in_each_format();
+  EXPECT_TRUE(is_gltf_file(folder.write("a.obj", files.at(".glb"))));
+  EXPECT_TRUE(is_gltf_file(folder.write("b", files.at(".gltf"))));
+  EXPECT_FALSE(is_gltf_file(folder.write("c.glb", files.at(".ply"))));
+  EXPECT_TRUE(is_gltf_file("no longer there.GLB"));
+}
+
 std::string format_of_text(const std::string& text) {
   const auto bytes = std::as_bytes(std::span(text));
   return format_of({bytes.begin(), bytes.end()}, ".own");
@@ -75,6 +85,14 @@ TEST(Format, TheNameCountsWhereTheContentSaysNothing) {
   for (const char* name : {"a.fbx", "a.stl", "a.x"})
     EXPECT_THAT(error_of(import_text(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")),
                 AllOf(HasSubstr(name), Not(HasSubstr("--any-format"))));
+}
+
+// Assimp has several readers for .xml, and would try all others when none of these wants a file.
+TEST(Format, AssimpHasNoReaderOfOtherFormats) {
+  const TemporaryFolder folder;
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_TRUE(import_in_this_process(folder.write("a.off", off), {}, 0));
+  EXPECT_FALSE(import_in_this_process(folder.write("a.xml", off), {}, 0));
 }
 
 TEST(Format, OthersAreRefusedByName) {

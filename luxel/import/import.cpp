@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <fstream>
 #include <new>
 
 #include "luxel/base/process_memory.h"
@@ -149,6 +150,20 @@ Result<Imported> import_scene(const std::filesystem::path& path, const ImportPar
   }
   LUXEL_TRY_STATUS(check_format(source));
   return read_checked(std::move(source), params);
+}
+
+bool is_gltf_file(const std::filesystem::path& path) {
+  constexpr size_t kHead = 4096;
+  std::vector<std::byte> head;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {  // to open a pipe is to wait for it
+    head.resize(kHead);
+    std::ifstream in(path, std::ios::binary);
+    in.read(reinterpret_cast<char*>(head.data()), kHead);
+    head.resize(size_t(in.gcount()));
+  }
+  const std::string format = format_of(head, ending_of(path));
+  return format == ".glb" || format == ".gltf";
 }
 
 Result<Imported> import_in_this_process(const std::filesystem::path& path,

@@ -56,6 +56,9 @@ inline constexpr float kUsualCreaseDeg = 60;
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params = {},
                               uint64_t max_memory_bytes = 0);
 
+/// Whether a file is glTF: by what it begins with, or by its name where that says nothing.
+bool is_gltf_file(const std::filesystem::path& path);
+
 /// Imports a file that lies in memory and names no other. `name` is for messages; its extension
 /// counts where the content does not say what the file is.
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,

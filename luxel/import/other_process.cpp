@@ -78,9 +78,13 @@ Said said_in(std::string_view text) {
     const size_t end = std::min(text.find('\n'), text.size());
     const auto event = nlohmann::json::parse(text.substr(0, end), nullptr, false);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (!event.is_object() || !event.contains("message") || !event["message"].is_string()) continue;
-    if (event.value("event", "") == "warning") said.warnings.push_back(event["message"]);
-    if (event.value("event", "") == "error") said.error = event["message"];
+    if (!event.is_object()) continue;
+    const auto text_in = [&](const char* key) {
+      const auto found = event.find(key);
+      return found == event.end() || !found->is_string() ? "" : found->get<std::string>();
+    };
+    if (text_in("event") == "warning") said.warnings.push_back(text_in("message"));
+    if (text_in("event") == "error") said.error = text_in("message");
   }
   return said;
 }

@@ -2,14 +2,11 @@
 
 #include <vector>
 
+#include "luxel/import/import.h"
 #include "luxel/scene/validate.h"
 
 namespace luxel::pipeline {
 namespace {
-
-bool is_gltf(const std::filesystem::path& file) {
-  return file.extension() == ".gltf" || file.extension() == ".glb";
-}
 
 std::string joined(const std::vector<std::string>& parts) {
   std::string out;
@@ -26,7 +23,7 @@ LightUnit unit_of_light(const std::filesystem::path& file, const scene::Scene& o
   if (outside.sun) lux.push_back("--sun is in lux");
   if (!outside.ies.empty()) lux.push_back("IES files are in candela");
   const bool all_by_ies = !outside.ies.empty() && outside.ies.size() >= own.lights.size();
-  if (scene::has_light(own) && is_gltf(file))
+  if (scene::has_light(own) && import::is_gltf_file(file))
     lux.push_back("lights of glTF files are in candela, lux and nits");
   else if (scene::has_light(own) && !all_by_ies)
     unknown.push_back(fmt::format("{} files state no unit of light", file.extension().string()));

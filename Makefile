@@ -28,7 +28,7 @@ JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { jobs = int($$2 / 209715
 CONFIGURE ?=
 
 .DEFAULT_GOAL := all
-.PHONY: all luxel-bench setup setup-tests setup-docs setup-package build python package test ray-queries test-all demo docs bench asan tsan fuzz format format-check clean
+.PHONY: all luxel-bench setup setup-tests setup-docs setup-package build python package test ray-queries test-all demo docs bench asan tsan fuzz mutants format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -124,6 +124,10 @@ fuzz:
 	cmake --preset fuzz $(CONFIGURE)
 	cmake --build --preset fuzz --parallel $(JOBS) --target luxel_fuzz
 	tools/fuzz.sh $(FUZZ_SECONDS) $(TARGET)
+
+# Damaged files of every format that luxel reads: before each release.
+mutants: build
+	tools/mutants.py $(LUXEL)
 
 format:
 	$(SOURCES) | xargs -0 clang-format -i

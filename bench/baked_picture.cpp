@@ -6,6 +6,7 @@
 #include <jpeglib.h>
 
 #include "luxel/base/check.h"
+#include "luxel/display/smooth_lookup.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/image/flip.h"
 #include "luxel/transport/irradiance_field.h"
@@ -18,7 +19,7 @@ Result<image::Image> draw_baked(const pipeline::Bake& bake, const trace::RayTrac
   const transport::TexelField field{&bake.atlas, &bake.map, irradiance};
   return display::draw(
       bake.scene, tracer, camera,
-      [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
+      [&](const scene::SurfacePoint& p) { return display::smooth_irradiance_at(field, p); }, params,
       progress);
 }
 

@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
+#include "apps/cli/print.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/export/baked_glb.h"
@@ -57,7 +58,7 @@ int run_import_any(const ImportAnyOptions& options) {
   print_warnings(imported->warnings, options.common);
   const auto glb = export_::scene_glb(imported->scene);
   if (!glb) return report(glb.error(), options.common);
-  std::fwrite(glb->data(), 1, glb->size(), stdout);
+  print_bytes(stdout, std::as_bytes(std::span(*glb)));
   return kDone;
 }
 

@@ -18,6 +18,10 @@ void print_line(std::FILE* to, std::string_view text, std::string_view own) {
 
 void print_own(std::FILE* to, const char* text) { write(to, text); }
 
+void print_bytes(std::FILE* to, std::span<const std::byte> bytes) {
+  std::fwrite(bytes.data(), 1, bytes.size(), to);
+}
+
 void print_json(std::FILE* to, const nlohmann::json& json, int indent) {
   write(to, json_text(json, indent) + "\n");
 }

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string_view>
 
 namespace luxel::cli {
@@ -14,6 +15,8 @@ void print_line(std::FILE* to, std::string_view text, std::string_view own = {})
 void print_own(std::FILE* to, const char* text);
 /// Valid JSON in any case (json_text()), and a line break.
 void print_json(std::FILE* to, const nlohmann::json& json, int indent = 2);
+/// A file for another program.
+void print_bytes(std::FILE* to, std::span<const std::byte> bytes);
 /// The text in the place of the line on which the cursor of stderr, a terminal, stands.
 void rewrite_line(std::string_view text);
 

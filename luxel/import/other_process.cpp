@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/run_program.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/import/readers.h"
 
 namespace luxel::import {
@@ -123,7 +124,7 @@ ProcessLimits usual_limits(uint64_t file_bytes, uint64_t max_memory_bytes) {
 
 Result<Imported> import_in_other_process(const fs::path& path, const ImportParams& params,
                                          const ProcessLimits& limits) {
-  const std::string file = path.string();
+  const std::string file = shown_text(path.string());
   LUXEL_TRY(const fs::path program, find_luxel(file));
   ReadingMemory memory(limits.memory_bytes);
   // It sets its own limit of processor time. This one is for a process that waits for nothing.
@@ -134,7 +135,7 @@ Result<Imported> import_in_other_process(const fs::path& path, const ImportParam
   if (end.status != 0) return failure_of(end, said, file, limits);
   LUXEL_TRY_STATUS(memory.take(end.out.size(), file));
   LUXEL_TRY(Imported imported,
-            import_glb(std::move(end.out), file, {.origin = params.origin}, memory));
+            import_glb(std::move(end.out), path.string(), {.origin = params.origin}, memory));
   imported.warnings.insert(imported.warnings.begin(), said.warnings.begin(), said.warnings.end());
   // Nodes of a file that nobody sees.
   imported.node_of_instance.clear(), imported.node_of_light.clear();

@@ -156,7 +156,7 @@ TEST(Interrupt, NotBySignalsThatAreIgnored) {
 TEST(Interrupt, NotByAClosedPipe) {
   const ScratchFolder s;
   shell(LUXEL_BINARY " bake " + scene_file("cornell-box.glb") + " -o " + (s.path / "b").string() +
-        " --resolution 32 --samples 4 2>&1 | true");
+        " --resolution 32 --samples 4 --progress-json 2>&1 | true");
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
 }
 

@@ -36,8 +36,7 @@ struct Common {
 /// Adds them as the last options of a command, whose SCENE is there by then.
 void add_common(CLI::App& command, Common& common);
 
-/// --smooth-normals, --up, --unit, --search-path, --trust-paths,
-/// --any-format.
+/// --smooth-normals, --up, --unit, --search-path, --trust-paths, --any-format.
 std::vector<CLI::Option*> add_import(CLI::App& command, Given& given);
 /// --background, --sun, --environment, --sky and --ies.
 std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);

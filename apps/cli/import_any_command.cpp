@@ -39,7 +39,7 @@ bool limit_this_process(const import::ProcessLimits& limits) {
   // At a hard limit of time the kernel sends SIGKILL, which does not say why.
   const auto seconds = uint64_t(std::ceil(limits.seconds));
   const uint64_t most = import::ReadingMemory(limits.memory_bytes).left_bytes();
-  // Who waits for the scene may be killed.
+  // The process that waits for the scene may be killed: then this one is, too.
   return ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && limit(RLIMIT_CORE, 0) &&
          limit(RLIMIT_CPU, seconds, 1) && limit(RLIMIT_FSIZE, most) &&
          limit(RLIMIT_AS, virtual_bytes() + most);

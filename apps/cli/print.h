@@ -1,4 +1,4 @@
-// What the commands print, on a terminal or into a file. Nothing else here prints
+// Output of the commands, on a terminal or into a file. Nothing else here prints
 // (tools/check_arrows.py): so no text of a file or a user reaches a terminal that would obey it.
 #pragma once
 

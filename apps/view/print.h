@@ -1,4 +1,4 @@
-// What luxel-view prints. Nothing else here prints (tools/check_arrows.py): so no text of a file or
+// Output of luxel-view. Nothing else here prints (tools/check_arrows.py): so no text of a file or
 // a user reaches a terminal that would obey it.
 #pragma once
 

@@ -14,7 +14,7 @@ inline void lay_out_text(const std::string& text) {
   ImGui::TextUnformatted(short_message(text).c_str());
 }
 
-/// Whether it was clicked.
+/// True when it was clicked.
 inline bool lay_out_line_of_list(const std::string& name, bool is_selected) {
   return ImGui::Selectable(short_message(name).c_str(), is_selected);
 }

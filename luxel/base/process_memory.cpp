@@ -76,7 +76,7 @@ std::atomic_flag& limit_is_taken() {
 MemoryLimit::MemoryLimit(uint64_t more_bytes) {
   if (!kHasOwnMemory || limit_is_taken().test_and_set()) return;
   rlimit limit{};
-  // What RLIMIT_DATA counts: private memory that may be written to, used or not.
+  // RLIMIT_DATA counts private memory that may be written to, used or not.
   const uint64_t held = stated_bytes("/proc/self/status", "VmData:");
   if (held > 0 && ::getrlimit(RLIMIT_DATA, &limit) == 0) {
     before_ = limit.rlim_cur;

@@ -45,7 +45,7 @@ class MemoryFile {
   int file_;
 };
 
-/// What a new program is to find. Both parts belong to one call of posix_spawn().
+/// Files and signals with which a new program begins, for one call of posix_spawn().
 struct Beginning {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;

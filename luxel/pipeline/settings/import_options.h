@@ -6,8 +6,7 @@
 
 namespace luxel::pipeline {
 
-/// --smooth-normals, --up, --unit, --search-path, --trust-paths,
-/// --any-format.
+/// --smooth-normals, --up, --unit, --search-path, --trust-paths, --any-format.
 Options<import::ImportParams> import_options();
 
 }  // namespace luxel::pipeline

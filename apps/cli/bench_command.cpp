@@ -133,8 +133,7 @@ int run_page(const BenchOptions& options, const std::string& name,
     print_json(stdout, page.json);
     return kDone;
   }
-  for (const bench::Table& table : page.tables)
-    print_own(stdout, (bench::markdown(table) + "\n").c_str());
+  for (const bench::Table& table : page.tables) print_own(stdout, bench::markdown(table) + "\n");
   return kDone;
 }
 
@@ -167,7 +166,7 @@ int run_stated(const BenchOptions& options) {
   if (options.common.json)
     print_json(stdout, section.json);
   else
-    print_own(stdout, (bench::wrapped(section.markdown) + "\n").c_str());
+    print_own(stdout, bench::wrapped(section.markdown) + "\n");
   return kDone;
 }
 
@@ -181,7 +180,7 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
     if (options.common.json)
       print_json(stdout, table->json);
     else
-      print_own(stdout, (bench::markdown(*table) + "\n").c_str());
+      print_own(stdout, bench::markdown(*table) + "\n");
   }
   return kDone;
 }

@@ -118,7 +118,7 @@ int run(int argc, char** argv) {
   Action action;
   std::unique_ptr<CLI::App> app = make_app(action);
   if (given.empty()) {
-    print_own(stderr, app->help().c_str());
+    print_own(stderr, app->help());
     return kUsage;
   }
   if (const std::string unknown = about_unknown_command(*app, given); !unknown.empty())

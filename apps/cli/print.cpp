@@ -16,7 +16,7 @@ void print_line(std::FILE* to, std::string_view text, std::string_view own) {
   write(to, std::string(own) + short_message(text) + "\n");
 }
 
-void print_own(std::FILE* to, const char* text) { write(to, text); }
+void print_own(std::FILE* to, std::string_view text) { write(to, text); }
 
 void print_bytes(std::FILE* to, std::span<const std::byte> bytes) {
   std::fwrite(bytes.data(), 1, bytes.size(), to);

@@ -12,7 +12,7 @@ namespace luxel::cli {
 /// One line: short_message() of the text behind `own`, which is luxel's and may have colours.
 void print_line(std::FILE* to, std::string_view text, std::string_view own = {});
 /// Text of luxel's own alone, with its line breaks, such as a table.
-void print_own(std::FILE* to, const char* text);
+void print_own(std::FILE* to, std::string_view text);
 /// Valid JSON in any case (json_text()), and a line break.
 void print_json(std::FILE* to, const nlohmann::json& json, int indent = 2);
 /// A file for another program.

@@ -129,7 +129,7 @@ Result<RecordFile> RecordFile::open_to_read(const std::filesystem::path& path, C
 
 Result<RecordFile> RecordFile::open(const std::filesystem::path& path, int flags, Check check) {
   const int file = ::open(path.c_str(), flags | O_CLOEXEC);
-  if (file < 0 && errno == ELOOP)
+  if (file < 0 && errno == ELOOP && (flags & O_NOFOLLOW) != 0)
     return fail(ErrorCode::io,
                 "{} is a symbolic link, and the file that it names would grow; remove it",
                 path.string());

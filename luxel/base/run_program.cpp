@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "luxel/base/clock.h"
+#include "luxel/base/stop_signals.h"
 #include "luxel/base/transfer.h"
 
 namespace luxel {
@@ -46,41 +47,41 @@ class MemoryFile {
 };
 
 /// Files and signals with which a new program begins, for one call of posix_spawn().
-struct Beginning {
+struct SpawnSettings {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;
 
-  Beginning(int out, int err) {
+  SpawnSettings(int out, int err) {
     ::posix_spawn_file_actions_init(&files);
     ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
     ::posix_spawn_file_actions_adddup2(&files, err, STDERR_FILENO);
     ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
     // Threads of a bake block the signals that ask it to stop.
-    sigset_t none, usual;
-    ::sigemptyset(&none), ::sigemptyset(&usual);
-    for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGCHLD}) ::sigaddset(&usual, signal);
+    sigset_t none, usual = stop_signals();
+    ::sigemptyset(&none);
+    for (const int signal : {SIGPIPE, SIGCHLD}) ::sigaddset(&usual, signal);
     ::posix_spawnattr_init(&attributes);
     ::posix_spawnattr_setsigmask(&attributes, &none);
     ::posix_spawnattr_setsigdefault(&attributes, &usual);
     ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   }
-  Beginning(const Beginning&) = delete;
-  Beginning& operator=(const Beginning&) = delete;
-  ~Beginning() {
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  ~SpawnSettings() {
     ::posix_spawn_file_actions_destroy(&files);
     ::posix_spawnattr_destroy(&attributes);
   }
 };
 
 Result<pid_t> start(const std::vector<std::string>& words, int out, int err) {
-  const Beginning beginning(out, err);
+  const SpawnSettings settings(out, err);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t process = 0;
-  const int error = ::posix_spawn(&process, words[0].c_str(), &beginning.files,
-                                  &beginning.attributes, arguments.data(), ::environ);
+  const int error = ::posix_spawn(&process, words[0].c_str(), &settings.files, &settings.attributes,
+                                  arguments.data(), ::environ);
   if (error == 0) return process;
   return fail(ErrorCode::io, "cannot start {}: {}", words[0], std::strerror(error));
 }

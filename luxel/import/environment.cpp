@@ -2,7 +2,6 @@
 
 #include <new>
 
-#include "luxel/base/process_memory.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/reading_memory.h"
 
@@ -51,7 +50,6 @@ Result<ImportedEnvironment> environment_from(const image::Image& picture, const 
 Result<ImportedEnvironment> read_environment(const std::filesystem::path& file, float rotation_rad,
                                              float scale, uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
-  const MemoryLimit limit(memory.left_bytes());
   try {
     const Result<image::Image> picture = decode(file, memory);
     if (picture) return environment_from(*picture, file.string(), rotation_rad, scale);

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <new>
 
-#include "luxel/base/process_memory.h"
 #include "luxel/base/shown_text.h"
 #include "luxel/import/format.h"
 #include "luxel/import/other_process.h"
@@ -141,7 +140,6 @@ Result<SourceFile> open_source(const std::filesystem::path& path, const ImportPa
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params,
                               uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
-  const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY(SourceFile source, open_source(path, params, memory));
   if (params.any_format && !is_own_format(source.extension) && !name_in_assimp(path).empty()) {
     const ProcessLimits limits = usual_limits(source.bytes.size(), max_memory_bytes);
@@ -169,7 +167,6 @@ bool is_gltf_file(const std::filesystem::path& path) {
 Result<Imported> import_in_this_process(const std::filesystem::path& path,
                                         const ImportParams& params, uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
-  const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY(SourceFile source, open_source(path, params, memory));
   if (name_in_assimp(path).empty()) LUXEL_TRY_STATUS(check_format(source));
   return read_checked(std::move(source), params);
@@ -178,7 +175,6 @@ Result<Imported> import_in_this_process(const std::filesystem::path& path,
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
                               uint64_t max_memory_bytes) {
   ReadingMemory memory(max_memory_bytes);
-  const MemoryLimit limit(memory.left_bytes());
   LUXEL_TRY_STATUS(memory.take(bytes.size(), name));
   const std::string extension = format_of(bytes, ending_of(name));
   SourceFile source{name, shown_text(name), extension, {}, memory, std::move(bytes)};
@@ -194,7 +190,6 @@ Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& nam
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name,
                             const ImportParams& params) {
   ReadingMemory memory(0);
-  const MemoryLimit limit(memory.left_bytes());
   return import_glb(std::move(bytes), name, params, memory);
 }
 

@@ -99,7 +99,7 @@ Failure failure_of(const ProgramEnd& end, const Said& said, const std::string& f
     return fail(ErrorCode::bad_input,
                 "{}: reading it took longer than {:g} s; convert it to glTF (.glb)", file,
                 limits.seconds);
-  if (signal == SIGINT || signal == SIGTERM)
+  if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
     return fail(ErrorCode::cancelled, "{}: the process that read it was stopped", file);
   const char* const name = ::sigdescr_np(signal);
   if (signal != 0)

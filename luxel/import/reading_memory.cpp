@@ -3,21 +3,25 @@
 #include <algorithm>
 
 #include "luxel/base/file.h"
-#include "luxel/base/process_memory.h"
 
 namespace luxel::import {
 namespace {
 
 constexpr double kMiB = 1024 * 1024;
 
-}  // namespace
-
-ReadingMemory::ReadingMemory(uint64_t max_bytes) : max_bytes_(max_bytes) {
+uint64_t bytes_beside_held(uint64_t max_bytes) {
   constexpr uint64_t kLeast = 64 * 1024 * 1024;
   const uint64_t held = resident_bytes();
-  left_bytes_ = max_bytes == 0 ? available_bytes() : std::max(max_bytes, held) - held;
-  left_bytes_ = first_bytes_ = std::max(left_bytes_, kLeast);
+  return std::max(max_bytes == 0 ? available_bytes() : std::max(max_bytes, held) - held, kLeast);
 }
+
+}  // namespace
+
+ReadingMemory::ReadingMemory(uint64_t max_bytes)
+    : max_bytes_(max_bytes),
+      first_bytes_(bytes_beside_held(max_bytes)),
+      left_bytes_(first_bytes_),
+      limit_(first_bytes_) {}
 
 Status ReadingMemory::take(uint64_t bytes, std::string_view what) {
   if (bytes > left_bytes_)

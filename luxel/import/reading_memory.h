@@ -7,12 +7,14 @@
 #include <string_view>
 #include <vector>
 
+#include "luxel/base/process_memory.h"
 #include "luxel/base/result.h"
 
 namespace luxel::import {
 
 /// Counts what a file's parts will need before they are made, so that a small file cannot ask for
-/// more than there is.
+/// more than there is. While it lives, the kernel gives the process no more than that, whichever
+/// library asks.
 class ReadingMemory {
  public:
   /// `max_bytes`: for the whole process, with what it has already; 0: what the machine has free. A
@@ -30,7 +32,8 @@ class ReadingMemory {
   const char* where_from() const;
   const char* remedy() const;
 
-  uint64_t left_bytes_ = 0, first_bytes_ = 0, max_bytes_ = 0;
+  uint64_t max_bytes_ = 0, first_bytes_ = 0, left_bytes_ = 0;
+  MemoryLimit limit_;
 };
 
 /// Whether a library says by words of its own that an allocation failed.

@@ -298,7 +298,7 @@ Status for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress,
                            Team* team) {
   constexpr size_t kBlock = 2048;
-  progress.begin("walls", map.texels.size());
+  progress.begin("neighbours", map.texels.size());
   const Search search{scene, atlas, map, tracer, {}};
   std::vector<uint8_t> ways(map.texels.size());
   const auto find = [&](size_t begin, size_t end) {

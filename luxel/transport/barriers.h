@@ -67,8 +67,8 @@ bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
 
 /// Calls visit(a, b) for all texels of one chart that are neighbours in a row, a column or a
 /// diagonal and open to each other (is_open_between), once for each pair, in the order of the
-/// texels. The members of a team share the texels out, and all visit all pairs. The stage "walls".
-/// Errors: cancelled, another member of the team gives up.
+/// texels. The members of a team share the texels out, and all visit all pairs. The stage
+/// "neighbours". Errors: cancelled, another member of the team gives up.
 Status for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const atlas::TexelMap& map, const trace::RayTracer& tracer,
                            const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress,

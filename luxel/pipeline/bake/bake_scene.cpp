@@ -116,7 +116,8 @@ enum class LaysOutFor { bake, plan };
 /// Splits sides and lays out what was read.
 Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& scene,
                                  const Keepers& keepers, LaysOutFor use, Progress& progress) {
-  LUXEL_TRY(SettledResolution settled, settle_resolution(settings, scene, progress));
+  LUXEL_TRY(const double most, first_of(keepers.team, most_texels(settings), progress));
+  LUXEL_TRY(SettledResolution settled, settle_resolution(settings, most, scene, progress));
   if (use == LaysOutFor::bake && !keepers.team && !keepers.device)
     expect_usual_bake(scene, settled.settings, progress);
   SidesParams params{
@@ -129,12 +130,12 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
   BakeSettings of_layout = settings;
   of_layout.uv = params.uv;
   if (params.uv != settings.uv && settled.chosen && settled.chosen->uv1_area > 0) {
-    LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
+    LUXEL_TRY(settled, settle_resolution(of_layout, most, scene, progress));
   }
   LUXEL_TRY(Sides sides, split_sides(scene, params, progress));
   of_layout.uv = sides.uv;
   if (sides.wrong_in_uv1 && sides.uv == atlas::UvMode::unwrap) {
-    LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
+    LUXEL_TRY(settled, settle_resolution(of_layout, most, scene, progress));
   }
   settled.settings.uv = sides.uv;
   LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress, keepers.team));

@@ -105,7 +105,7 @@ TEST(ThinParts, ShowLightOfTheirOwn) {
 std::string said_of(BakeSettings settings) {
   scene::Scene scene = facade();
   Progress progress;
-  const auto settled = settle_resolution(settings, scene, progress);
+  const auto settled = settle_resolution(settings, kMostTexelsByDefault, scene, progress);
   const auto layout = lay_out_texels(settled->settings, scene, progress);
   return about_resolution(*settled, layout->atlas, layout->stats);
 }

@@ -23,32 +23,40 @@ constexpr int kRoundsPart = 16;
 /// The time of one core per ray in most scenes [s], and the parts of it.
 constexpr double kRaySeconds = 1.9e-7;
 constexpr double kDirectPart = 0.12, kSupersamplePart = 0.12, kTracePart = 0.76;
-/// Over what rays take: bounces in most scenes; the light of the denoiser's check; the walls that
-/// part its texels, which a ray beside each finds.
-constexpr double kBouncesOverRays = 0.08, kCheckOverRays = 0.04, kWallsOverRays = 0.03;
+/// Rays that are added where the denoiser would leave light mottled, over the first ones: in most
+/// scenes.
+constexpr double kAddedOverFirst = 0.65;
+/// Over what rays take: bounces in most scenes; the light of the denoiser's check.
+constexpr double kBouncesOverRays = 0.08, kCheckOverRays = 0.04;
+/// The sides of walls are found between neighbours [s of one core].
+constexpr double kSideSecondsPerTexel = 2e-6;
 /// The check looks at so many texels at least, which is this many times that part of small maps.
 double more_check(double texels) { return std::max(1.0, 1e5 / std::max(texels, 1.0)); }
-/// Charts are looked across, too [s of one core]; and a layer is bounced as the whole is, but
-/// seldom by sparse sweeps.
-constexpr double kWallSecondsPerChart = 1e-4, kLayerOverBounces = 1.3;
+/// A layer is bounced as the whole is, but seldom by sparse sweeps.
+constexpr double kLayerOverBounces = 1.3;
+
+double added_over_first(const BakeSettings& settings) {
+  return gather_params(settings).more_rays && !settings.keep ? kAddedOverFirst : 0;
+}
 
 }  // namespace
 
 std::vector<Stage> stages_of(const gather::Forecast& forecast, const BakeSettings& settings,
                              const BakeSize& size) {
-  std::vector<Stage> stages{{"direct light", forecast.direct_s},
+  const double sides_s =
+      kSideSecondsPerTexel * size.texels * machine_load() / double(thread_count());
+  std::vector<Stage> stages{{"wall sides", sides_s},
+                            {"direct light", forecast.direct_s},
                             {"supersample", forecast.supersample_s},
-                            {"trace rays", forecast.trace_s},
-                            {"bounces", forecast.bounces_s}};
+                            {"trace rays", forecast.trace_s}};
+  if (const double added = added_over_first(settings); added > 0)
+    stages.push_back({"trace rays", added * forecast.trace_s});
+  stages.push_back({"bounces", forecast.bounces_s});
   const double rays_s = forecast.direct_s + forecast.trace_s;
   if (size.layers > 0)
     stages.push_back({"layers", kLayerOverBounces * size.layers * forecast.bounces_s});
   if (settings.denoise)
     stages.push_back({"check", more_check(size.texels) * kCheckOverRays * rays_s});
-  if (settings.repair_leaks)
-    stages.push_back(
-        {"walls", kWallsOverRays * rays_s + kWallSecondsPerChart * size.charts * machine_load() /
-                                                double(thread_count())});
   return stages;
 }
 
@@ -56,13 +64,14 @@ std::vector<Stage> usual_gather(const BakeSettings& settings, double texels) {
   if (adds_rounds(settings) || !settings.part.is_all()) return {};
   const double rays = texels * (settings.samples + first_direct_samples(settings));
   const double seconds = kRaySeconds * rays;
-  std::vector<Stage> stages{{"direct light", kDirectPart * seconds},
+  std::vector<Stage> stages{{"wall sides", kSideSecondsPerTexel * texels},
+                            {"direct light", kDirectPart * seconds},
                             {"supersample", kSupersamplePart * seconds},
-                            {"trace rays", kTracePart * seconds},
-                            {"bounces", kBouncesOverRays * seconds}};
-  // No walls: those of the layout would be taken for these.
-  if (settings.denoise)
-    stages.push_back({"check", (more_check(texels) * kCheckOverRays + kWallsOverRays) * seconds});
+                            {"trace rays", kTracePart * seconds}};
+  if (const double added = added_over_first(settings); added > 0)
+    stages.push_back({"trace rays", added * kTracePart * seconds});
+  stages.push_back({"bounces", kBouncesOverRays * seconds});
+  if (settings.denoise) stages.push_back({"check", more_check(texels) * kCheckOverRays * seconds});
   return stages;
 }
 

@@ -15,12 +15,14 @@ namespace {
 // Measured on a core of an AMD EPYC, in five scenes of shared/scenes.
 
 /// A view is chosen, and drawn.
-constexpr double kDrawSeconds = 0.6;
+constexpr double kDrawSeconds = 0.5, kDrawSecondsPerTriangle = 5e-5;
+/// Walls that part neighbours are looked for.
+constexpr double kPartSecondsPerTexel = 5e-7, kPartSecondsPerChart = 4e-5;
 constexpr double kSeamSecondsPerTexel = 1e-7, kSeamSecondsPerChart = 3e-5;
 constexpr double kWriteSecondsPerTexel = 4e-7;
 /// Texels of small charts have neighbours on many others, which take long to find. A layer needs
 /// this part of that time again.
-constexpr double kDenoiseSecondsPerTexel = 1.2e-5, kDenoiseSecondsPerChart = 1e-4;
+constexpr double kDenoiseSecondsPerTexel = 1.05e-5, kDenoiseSecondsPerChart = 2e-4;
 constexpr double kDenoiseOfLayer = 0.75;
 /// Layout: one thread makes charts and packs them, all look for walls and move samples.
 constexpr double kChartSecondsPerTriangle = 2e-6;
@@ -32,7 +34,10 @@ constexpr double kCovered = 0.7, kTrianglesPerChart = 4;
 }  // namespace
 
 BakeSize bake_size(const light::TexelScene& in, const BakeSettings& settings) {
-  BakeSize out{double(in.elements.size()), double(in.map.resolution), double(in.atlas.chart_count)};
+  BakeSize out{.texels = double(in.elements.size()),
+               .side = double(in.map.resolution),
+               .charts = double(in.atlas.chart_count),
+               .triangles = double(in.atlas.corners.size())};
   if (settings.layers != light::LayerMode::none)
     if (const auto layers = light::light_layers(in.scene, in.lights, settings.layers))
       out.layers = double(layers->size());
@@ -42,13 +47,17 @@ BakeSize bake_size(const light::TexelScene& in, const BakeSettings& settings) {
 std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings) {
   const double threads = double(thread_count());
   std::vector<Stage> stages;
+  if (settings.repair_leaks)
+    stages.push_back(
+        {"neighbours",
+         (kPartSecondsPerTexel * size.texels + kPartSecondsPerChart * size.charts) / threads});
   if (settings.denoise)
     stages.push_back({"denoise", (kDenoiseSecondsPerTexel * size.texels +
                                   kDenoiseSecondsPerChart * size.charts) *
                                      (1 + kDenoiseOfLayer * size.layers) / threads});
   stages.push_back({"seams", (1 + size.layers) * (kSeamSecondsPerTexel * size.texels +
                                                   kSeamSecondsPerChart * size.charts)});
-  stages.push_back({"draw", kDrawSeconds / threads});
+  stages.push_back({"draw", (kDrawSeconds + kDrawSecondsPerTriangle * size.triangles) / threads});
   stages.push_back(
       {"write files", (1 + size.layers) * kWriteSecondsPerTexel * size.side * size.side});
   if (settings.html) stages.back().seconds *= 2;
@@ -62,8 +71,10 @@ void expect_usual_bake(const scene::Scene& scene, const BakeSettings& settings,
   if (!settings.resolution || settings.pages.mode != atlas::PageMode::fixed) return;
   const double side = *settings.resolution;
   const double triangles = double(scene::first_triangles(scene).back());
-  const BakeSize size{kCovered * side * side * settings.pages.count, side,
-                      triangles / kTrianglesPerChart};
+  const BakeSize size{.texels = kCovered * side * side * settings.pages.count,
+                      .side = side,
+                      .charts = triangles / kTrianglesPerChart,
+                      .triangles = triangles};
   const std::vector<Stage> after = stages_after_solving(size, settings);
   progress.expect_at_end(after);
   if (settings.time_budget_s > 0)
@@ -76,7 +87,7 @@ void expect_usual_bake(const scene::Scene& scene, const BakeSettings& settings,
   const double threads = double(thread_count());
   std::vector<Stage> stages{
       {"charts", kChartSecondsPerTriangle * triangles},
-      {"sides", 0},  // not those that a solver looks at later
+      {"sides", 0},
       {"packing", kPackSeconds + kPackSecondsPerTriangle * triangles},
       {"walls", kWallSecondsPerTexel * size.texels / threads},
       {"samples", kMoveSecondsPerTexel * size.texels / threads},

@@ -29,11 +29,12 @@ struct BakeSize {
   double texels = 0, side = 0;  ///< side of the square
   double charts = 0;
   double layers = 0;  ///< that light is told apart into
+  double triangles = 0;
 };
 BakeSize bake_size(const light::TexelScene& in, const BakeSettings& settings);
 
-/// Denoiser, seams, preview and files, with what they are expected to take on a machine that is as
-/// busy as it is.
+/// Neighbours that walls part, denoiser, seams, preview and files, with what they are expected to
+/// take on a machine that is as busy as it is.
 std::vector<Stage> stages_after_solving(const BakeSize& size, const BakeSettings& settings);
 
 double seconds_of(std::span<const Stage> stages);

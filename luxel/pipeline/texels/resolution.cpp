@@ -5,6 +5,7 @@
 
 #include "luxel/atlas/fit_charts.h"
 #include "luxel/atlas/pages.h"
+#include "luxel/base/parallel.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -16,6 +17,10 @@ constexpr int kGutter = atlas::AtlasParams{}.gutter;
 constexpr double kSpare = 1.2;
 /// Gutters that take more of a lightmap are worth a word.
 constexpr double kLowUtilisation = 0.4;
+
+/// Layout, drawing and writing take so long per texel in scenes of many small charts [s of one
+/// core].
+constexpr double kFixedSecondsPerTexel = 2.5e-5;
 
 /// The longest chart must fit a page: triangles cannot be cut.
 int page_side_for(const atlas::SceneDetail& detail, double texels_per_metre) {
@@ -67,6 +72,15 @@ Result<int> resolution_for_uv1(const scene::Scene& scene, BlendedAt first, doubl
   return best.part < 1 ? best.resolution : first.resolution;
 }
 
+/// Why a default bake has no more texels.
+std::string limit_of(const SettledResolution& settled) {
+  const double millions = settled.most_texels * 1e-6;
+  if (settled.most_texels < kMostTexelsByDefault)
+    return fmt::format("--time-budget {:g} leaves time for about {:.2g} million texels",
+                       settled.settings.time_budget_s, millions);
+  return fmt::format("a default bake stops at about {:.0f} million texels", millions);
+}
+
 /// What would do: every chart but a fiftieth of the area kFewestTexelsAcross wide or wider.
 std::string advice_for(const SettledResolution& settled, double density) {
   const double pages = double(settled.settings.pages.count);
@@ -96,10 +110,16 @@ std::string about_gutters(const atlas::Atlas& atlas, const atlas::AtlasStats& st
 
 }  // namespace
 
-Result<SettledResolution> settle_resolution(const BakeSettings& settings, const scene::Scene& scene,
-                                            Progress& progress) {
+double most_texels(const BakeSettings& settings) {
+  if (!(settings.time_budget_s > 0)) return kMostTexelsByDefault;
+  const double seconds = 0.5 * settings.time_budget_s * double(thread_count());
+  return std::min(kMostTexelsByDefault, seconds / kFixedSecondsPerTexel);
+}
+
+Result<SettledResolution> settle_resolution(const BakeSettings& settings, double most,
+                                            const scene::Scene& scene, Progress& progress) {
   progress.begin("charts", 0);
-  SettledResolution out{settings, {}, {}};
+  SettledResolution out{settings, {}, {}, most};
   atlas::AtlasParams params;
   params.uv = settings.uv;
   params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
@@ -111,16 +131,14 @@ Result<SettledResolution> settle_resolution(const BakeSettings& settings, const 
         fixed ? kPageSide : page_side_for(out.detail, double(settings.texels_per_metre));
     return out;
   }
-  const atlas::ChosenResolution chosen =
-      atlas::choose_resolution(scene, out.detail, params, kMostTexelsByDefault);
+  const atlas::ChosenResolution chosen = atlas::choose_resolution(scene, out.detail, params, most);
   out.chosen = chosen;
   out.settings.resolution = chosen.resolution;
   if (chosen.uv1_area > 0) {
     LUXEL_TRY(const double part, blended_part(scene, chosen.resolution, progress));
     LUXEL_TRY(out.settings.resolution,
               resolution_for_uv1(scene, {chosen.resolution, part},
-                                 std::sqrt(kMostTexelsByDefault / chosen.uv1_area), kManyBlended,
-                                 progress));
+                                 std::sqrt(most / chosen.uv1_area), kManyBlended, progress));
   }
   if (fixed) return out;
   out.settings.texels_per_metre = float(chosen.texels_per_metre);
@@ -153,9 +171,8 @@ std::string about_resolution(const SettledResolution& settled, const atlas::Atla
   const bool fine = !(width > 0) || width * stats.texels_per_metre >= kFewestTexelsAcross;
   if (settled.chosen && settled.chosen->capped)
     return fmt::format(
-        "{:.3g} texels per metre are fewer than the {:.3g} that this scene needs, because a "
-        "default bake stops at about {:.0f} million texels; {}{}",
-        stats.texels_per_metre, settled.chosen->wished, kMostTexelsByDefault * 1e-6,
+        "{:.3g} texels per metre are fewer than the {:.3g} that this scene needs, because {}; {}{}",
+        stats.texels_per_metre, settled.chosen->wished, limit_of(settled),
         advice_for(settled, settled.chosen->wished), about_gutters(atlas, stats));
   if (fine) return {};
   return fmt::format(

@@ -27,7 +27,7 @@ scene::Scene two_squares(float gap) {
 
 int settled_side(const scene::Scene& scene) {
   Progress progress;
-  const auto settled = settle_resolution({}, scene, progress);
+  const auto settled = settle_resolution({}, kMostTexelsByDefault, scene, progress);
   EXPECT_TRUE(settled);
   return settled ? *settled->settings.resolution : 0;
 }
@@ -36,7 +36,7 @@ std::string said_of(const scene::Scene& scene, int resolution) {
   Progress progress;
   BakeSettings settings;
   settings.resolution = resolution;
-  const auto settled = settle_resolution(settings, scene, progress);
+  const auto settled = settle_resolution(settings, kMostTexelsByDefault, scene, progress);
   atlas::AtlasParams params;
   params.resolution = resolution;
   const auto atlas = atlas::make_atlas(scene, params, progress);
@@ -58,6 +58,32 @@ TEST(Resolution, KeepsTheChartsOfUv1Apart) {
   EXPECT_EQ(said_of(close, 2 * side), "");
   EXPECT_THAT(said_of(close, side),
               ::testing::HasSubstr(fmt::format("--resolution {} would do", 2 * side)));
+}
+
+// The squares fill 2 m^2, whatever lies between them. Less time leaves fewer texels, enough time as
+// many as no budget does.
+TEST(Resolution, FitsATimeBudget) {
+  const scene::Scene scene = two_squares(0.25f);
+  const auto settled_within = [&](double seconds) {
+    BakeSettings settings;
+    settings.uv = atlas::UvMode::unwrap, settings.time_budget_s = seconds;
+    Progress progress;
+    return settle_resolution(settings, most_texels(settings), scene, progress);
+  };
+  const auto open = settled_within(0), much = settled_within(1e4), little = settled_within(0.1);
+  ASSERT_TRUE(open && much && little);
+  EXPECT_EQ(*much->settings.resolution, *open->settings.resolution);
+  EXPECT_LT(*little->settings.resolution, *open->settings.resolution);
+  const double density = little->chosen->texels_per_metre;
+  EXPECT_LE(2 * density * density, little->most_texels);
+  atlas::AtlasParams params;
+  params.uv = atlas::UvMode::unwrap, params.resolution = *little->settings.resolution;
+  Progress progress;
+  const auto atlas = atlas::make_atlas(scene, params, progress);
+  ASSERT_TRUE(atlas);
+  const auto stats = atlas::atlas_stats(scene, *atlas, atlas::rasterise(scene, *atlas));
+  EXPECT_THAT(about_resolution(*little, *atlas, stats),
+              ::testing::HasSubstr("because --time-budget 0.1 leaves time for about"));
 }
 
 /// A square that faces up, and two that face down and meet along an edge. In TEXCOORD_1, of 64

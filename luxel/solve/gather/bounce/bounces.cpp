@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "luxel/base/check.h"
 #include "luxel/solve/gather/bounce/convergence.h"
@@ -27,6 +28,8 @@ constexpr double kSmallRest = 0.25;
 /// So many of them over every 16th ray take about as long as half a sweep over all. What is left is
 /// taken for a geometric series.
 constexpr int kMaxSparse = 8;
+/// Progress counts all sweeps as so many units.
+constexpr uint64_t kUnits = 1000;
 /// Sparse sweeps may bring a guess so much less closer than the last time (1.46 was seen).
 constexpr double kUnsure = 1.5;
 
@@ -43,7 +46,10 @@ struct Bouncing {
   RadiosityMap radiosity{};
   std::optional<SubsampledHits> subsampled{};
   Bounced out{};
+  double done = 0;    ///< sweeps, in those over all rays
+  uint64_t told = 0;  ///< of kUnits
 
+  void tell(double share);
   Status make_subsampled(size_t stride);
   const SubsampledHits* subsampled_at(size_t stride) const {
     return subsampled && subsampled->stride == stride ? &*subsampled : nullptr;
@@ -56,6 +62,12 @@ struct Bouncing {
   Status settle_guess(size_t sparse, const BounceParams& params);
   Result<Bounced> finished();
 };
+
+/// Tells the watcher what is done of all sweeps.
+void Bouncing::tell(double share) {
+  const auto units = uint64_t(share * double(kUnits));
+  if (units > told) progress.advance(units - std::exchange(told, units));
+}
 
 /// A copy of a quarter would take too much beside the hits.
 Status Bouncing::make_subsampled(size_t stride) {
@@ -75,7 +87,7 @@ Result<double> Bouncing::sweep(size_t stride) {
               .subsampled = subsampled_at(stride)};
   LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
   ++out.sweeps;
-  progress.advance(1);
+  done += cost_of_sweep(stride);
   return relative(std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0));
 }
 
@@ -137,7 +149,11 @@ Status Bouncing::settle(size_t stride, float tolerance) {
   for (int k = 0; k < kMaxSweeps; ++k) {
     LUXEL_TRY(const double change, sweep(stride));
     if (before > 0) ratio = change / before;
-    if (light_to_come(change, ratio, reflectance) <= double(tolerance) * double(stride)) break;
+    const double goal = double(tolerance) * double(stride),
+                 to_come = light_to_come(change, ratio, reflectance);
+    if (to_come <= goal) break;
+    if (ratio > 0 && ratio < 1)
+      tell(share_of_sweeps(done, std::log(to_come / goal) / -std::log(ratio), stride, ratio));
     before = change;
   }
   return {};
@@ -206,10 +222,10 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     for (size_t i = 0; i < n; ++i) bouncing.out.irradiance[i] = source_of(hits, direct, i);
   bouncing.out.variance.assign(n, 0.0f), bouncing.out.split_variance.assign(n, 0.0f);
   bouncing.radiosity = empty_radiosity_map(map.resolution);
-  progress.begin("bounces", 0);
+  progress.begin("bounces", kUnits);
   for (int k = 0; k < params.bounces; ++k) {
-    const Result<double> change = bouncing.sweep(1);
-    if (!change) return Failure{change.error()};
+    LUXEL_TRY_STATUS(bouncing.sweep(1).map([](double) {}));
+    bouncing.tell(double(k + 1) / params.bounces);
   }
   if (params.bounces >= 0) return bouncing.finished();
   // A device has no sparse sweeps: those over all of its rays take about as long as the map needs

@@ -1,6 +1,7 @@
 #include "luxel/solve/gather/bounce/convergence.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace luxel::gather {
 
@@ -13,6 +14,17 @@ ReflectanceRange reflectance_range(const transport::Elements& elements) {
     range.max = std::max(range.max, double(max_component(rho)));
   }
   return range;
+}
+
+double sweeps_of_later_stride(double ratio) {
+  return 1 + std::log(4.0) / -std::log(std::clamp(ratio, 0.1, 0.99));
+}
+
+double share_of_sweeps(double done, double left, size_t stride, double ratio) {
+  double to_come = left * cost_of_sweep(stride);
+  for (const size_t later : kStrides)
+    if (later < stride) to_come += sweeps_of_later_stride(ratio) * cost_of_sweep(later);
+  return done + to_come > 0 ? done / (done + to_come) : 0;
 }
 
 double mean_luminance(std::span<const Rgb> values) {

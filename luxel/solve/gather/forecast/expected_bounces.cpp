@@ -43,10 +43,8 @@ double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
 
 namespace {
 
-/// A sweep over every 16th or 4th ray takes longer than that part of one over all rays, which has
-/// neighbouring hits at hand: 1.25 to 1.4 times that. To copy every 16th hit takes about a third of
-/// a sweep. (Intel Xeon, 1024 x 1024, four scenes.)
-constexpr double kSparseCost = 1.3, kCopyCost = 0.3;
+/// To copy every 16th hit takes about a third of a sweep.
+constexpr double kCopyCost = 0.3;
 
 /// So many hits of an element are looked at: rooms are what decides, not noise.
 constexpr size_t kHitsLookedAt = 16;
@@ -198,14 +196,11 @@ Result<double> expected_sweeps(const atlas::TexelMap& map, const transport::Elem
   const size_t sparsest = sparsest_stride(size_t(samples));
   const double goal = double(params.tolerance) * double(sparsest);
   const FirstSweeps first = sweep_until(goal, reflectance_range(elements), light);
-  // Each step's tolerance is a quarter of that of the one before, and so has to be what is left;
-  // one sweep more averages the noise of the sparser ones.
-  const double later = 1 + std::log(4.0) / -std::log(std::clamp(first.ratio, 0.1, 0.99));
   double out = sparsest == kSparsest ? kCopyCost : 0;
   for (const size_t stride : kStrides) {
     if (stride > sparsest) continue;
-    const double cost = stride > 1 ? kSparseCost / double(stride) : 1;
-    out += cost * (stride == sparsest ? first.count : later);
+    const double count = stride == sparsest ? first.count : sweeps_of_later_stride(first.ratio);
+    out += count * cost_of_sweep(stride);
   }
   return out;
 }

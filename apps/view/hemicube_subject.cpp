@@ -5,7 +5,6 @@
 #include "apps/view/subject.h"
 #include "luxel/display/normals_view.h"
 #include "luxel/view/hemicube/hemicube_desk.h"
-#include "luxel/view/hemicube/report_worker.h"
 
 namespace luxel::view_window {
 namespace {
@@ -25,7 +24,7 @@ constexpr auto kTechniqueWords = [] {
 class HemicubeSubject : public Subject {
  public:
   HemicubeSubject(std::unique_ptr<view::LiveHemicube> live, view::ShownScene shown)
-      : live_(std::move(live)), reports_(view::ReportWorker::begin()), shown_(std::move(shown)) {}
+      : live_(std::move(live)), reports_(view::begin_reports()), shown_(std::move(shown)) {}
 
   view::ShownScene& shown() override { return shown_; }
   const view::Additions* additions() const override { return &additions_; }
@@ -53,9 +52,9 @@ class HemicubeSubject : public Subject {
       out.is_another = true;
     }
     LUXEL_TRY_STATUS(take_light(std::move(news), commands));
-    if (auto report = reports_->take()) {
-      if (!report->said.empty()) message = report->said;
-      if (report->report && report->mesh == mesh_) take_report(std::move(*report->report));
+    for (Result<view::ReportOfMesh>& come : reports_->take()) {
+      if (!come) message = come.error().message;
+      if (come && come->mesh == mesh_) take_report(std::move(come->report));
       out.has_news = true;
     }
     return out;
@@ -246,7 +245,7 @@ void HemicubeSubject::take(const Panel& panel, const view::Walk*) {
 MakeSubject hemicube_subject(std::vector<std::filesystem::path> models,
                              const pipeline::BakeSettings& settings) {
   auto live = std::make_shared<std::unique_ptr<view::LiveHemicube>>(
-      view::LiveHemicube::begin(std::move(models), settings));
+      std::make_unique<view::LiveHemicube>(std::move(models), settings));
   return [live](gpu::Commands& commands) -> Result<std::unique_ptr<Subject>> {
     LUXEL_TRY(view::ShownScene shown, view::nothing_shown(commands));
     return std::make_unique<HemicubeSubject>(std::move(*live), std::move(shown));

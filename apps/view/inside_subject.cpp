@@ -54,7 +54,7 @@ class InsideSubject : public Subject {
     const view::WorkshopState state = workshop_->state();
     if (state == view::WorkshopState::failed) return Work::failed;
     const bool is_at_work =
-        state == view::WorkshopState::at_work || selection_.desk.worker->is_at_work();
+        state == view::WorkshopState::at_work || view::is_busy(selection_.desk.probers);
     return is_at_work ? Work::at_work : Work::at_rest;
   }
 

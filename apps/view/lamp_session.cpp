@@ -47,7 +47,7 @@ LampPanel panel_of(const LampSession& session) {
   out.selected = session.desk.selected ? int(*session.desk.selected) : -1;
   out.selected_glow = session.selected_glow;
   out.history = session.history;
-  if (session.check) out.checked = session.check->share();
+  if (session.check) out.checked = std::max(0.0f, float(session.check->snapshot().share));
   out.found = session.found;
   if (!out.found.empty() && session.found_of != session.desk.changes)
     out.found = "Before the lamps changed: " + out.found;
@@ -85,15 +85,18 @@ void begin_or_stop_check(LampSession& session) {
     return;
   }
   session.found_of = session.desk.changes;
-  session.check = view::LampCheck::begin(session.opened, session.desk.lamps, kCheck);
+  session.check = view::begin_lamp_check();
+  session.check->ask(view::lamps_to_check(session.opened, session.desk.lamps, kCheck));
 }
 
 bool take_check(LampSession& session) {
-  const auto result = session.check ? session.check->result() : std::nullopt;
-  if (!result) return false;
-  session.found = *result ? view::sentence_of(**result, kCheck) : result->error().message;
-  session.check.reset();
-  return true;
+  if (!session.check) return false;
+  for (const Result<pipeline::IndirectError>& found : session.check->take()) {
+    session.found = found ? view::sentence_of(*found, kCheck) : found.error().message;
+    session.check.reset();
+    return true;
+  }
+  return false;
 }
 
 void begin_to_save_lxr(LampSession& session) {

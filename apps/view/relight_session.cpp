@@ -12,7 +12,8 @@ void begin(const RelitLive& live, RelightSession& session) {
   session.failed.clear();
   session.made_of = live.desk.changes;
   live.bake.rest(true);
-  session.maker = view::LxrMaker::begin({live.desk.read, live.desk.now, session.params.settings});
+  session.maker = view::begin_lxr_maker();
+  session.maker->ask({live.desk.read, live.desk.now, session.params.settings});
 }
 
 /// The bake begins anew, if it had not come to its end.
@@ -78,14 +79,14 @@ Result<bool> follow_relight(gpu::Commands& commands, const RelitLive& live, std:
     message = "preparation was stopped because the scene has changed; start it again";
     return false;
   }
-  std::optional<Result<view::MadeLxr>> made = session.maker->take();
-  if (!made) return false;
+  std::vector<Result<view::MadeLxr>> made = session.maker->take();
+  if (made.empty()) return false;
   session.maker.reset();
-  if (*made) {
-    LUXEL_TRY_STATUS(show_lamps(commands, live, std::move(**made), message, session));
+  if (made[0]) {
+    LUXEL_TRY_STATUS(show_lamps(commands, live, std::move(*made[0]), message, session));
     return true;
   }
-  session.failed = message = made->error().message;
+  session.failed = message = made[0].error().message;
   wake(live);
   return false;
 }
@@ -93,8 +94,8 @@ Result<bool> follow_relight(gpu::Commands& commands, const RelitLive& live, std:
 Status wait_for_relight(RelightSession& session) {
   if (session.maker) {
     session.maker->wait();
-    if (const auto made = session.maker->take(); made && !*made)
-      session.failed = made->error().message;
+    for (const Result<view::MadeLxr>& made : session.maker->take())
+      if (!made) session.failed = made.error().message;
     session.maker.reset();
   }
   if (session.failed.empty()) return {};

@@ -108,7 +108,7 @@ SelectionPanel selection_lines(const SelectionSession& s) {
     if (desk.probed.sources->left_out > 0)
       out.left_out = fmt::format("{} dimmer sources are left out", desk.probed.sources->left_out);
   }
-  out.said = desk.worker->is_at_work() ? "exact light is being computed" : desk.said;
+  out.said = view::is_busy(desk.probers) ? "exact light is being computed" : desk.said;
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <set>
 
-#include "luxel/atlas/test_scenes.h"
+#include "luxel/atlas/atlas_test_support.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 

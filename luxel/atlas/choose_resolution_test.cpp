@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "luxel/atlas/test_scenes.h"
+#include "luxel/atlas/atlas_test_support.h"
 
 namespace luxel::atlas {
 namespace {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/atlas/atlas_test_support.h"
 #include "luxel/atlas/keep_uv.h"
 #include "luxel/atlas/shared_parts.h"
-#include "luxel/atlas/test_scenes.h"
 
 namespace luxel::atlas {
 namespace {

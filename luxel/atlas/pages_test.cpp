@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "luxel/atlas/test_scenes.h"
+#include "luxel/atlas/atlas_test_support.h"
 #include "luxel/base/parallel.h"
 
 namespace luxel::atlas {

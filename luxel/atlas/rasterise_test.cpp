@@ -3,10 +3,10 @@
 #include <cstring>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/atlas/atlas_test_support.h"
 #include "luxel/atlas/cover.h"
-#include "luxel/atlas/test_scenes.h"
 #include "luxel/base/random.h"
-#include "luxel/base/thread_team.h"
+#include "luxel/base/team_test_support.h"
 
 namespace luxel::atlas {
 namespace {

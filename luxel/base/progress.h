@@ -76,6 +76,8 @@ class Progress {
   }
   /// Holds the work where it next calls cancelled(), and lets it go on. Thread-safe.
   void set_paused(bool is_paused);
+  /// True while it is held. Thread-safe.
+  bool is_paused() const { return is_paused_.load(std::memory_order_relaxed); }
 
   /// What a watcher sees: the running stage, its units and the time [s].
   struct Snapshot {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "luxel/base/parallel.h"
-#include "luxel/base/thread_team.h"
+#include "luxel/base/team_test_support.h"
 
 namespace luxel {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
-#include "luxel/base/thread_team.h"
+#include "luxel/base/team_test_support.h"
 #include "luxel/image/color.h"
 
 namespace luxel::image {

@@ -2,7 +2,7 @@
 // number, and reads past the ends of short lists.
 #include <gmock/gmock.h>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

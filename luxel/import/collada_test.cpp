@@ -1,7 +1,7 @@
 // .dae files: units, axes, the node tree, materials, lights and cameras.
 #include <gmock/gmock.h>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 #include "luxel/scene/digest.h"
 
 namespace luxel::import {

@@ -3,7 +3,7 @@
 // (which the sanitizers see for ours, and for theirs where a block is copied).
 #include <gmock/gmock.h>
 
-#include "luxel/import/compressed_test_files.h"
+#include "luxel/import/compressed_test_support.h"
 
 namespace luxel::import {
 namespace {

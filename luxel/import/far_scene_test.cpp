@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 #include "luxel/scene/digest.h"
 #include "luxel/scene/origin.h"
 

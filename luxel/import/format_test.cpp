@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "luxel/import/import_test_support.h"
 #include "luxel/import/other_process.h"
-#include "luxel/import/test_files.h"
 
 namespace luxel::import {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "luxel/base/base64.h"
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

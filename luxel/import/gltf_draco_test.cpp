@@ -1,7 +1,7 @@
 // KHR_draco_mesh_compression: what Draco's encoder made of a torus is the torus.
 #include <gmock/gmock.h>
 
-#include "luxel/import/compressed_test_files.h"
+#include "luxel/import/compressed_test_support.h"
 
 namespace luxel::import {
 namespace {

@@ -3,7 +3,7 @@
 #include <webp/encode.h>
 
 #include "luxel/base/base64.h"
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 #include "luxel/scene/specular.h"
 
 namespace luxel::import {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "luxel/base/process_memory.h"
-#include "luxel/import/compressed_test_files.h"
+#include "luxel/import/compressed_test_support.h"
 #include "tests/support.h"
 
 namespace luxel::import {

@@ -1,7 +1,7 @@
 // Skins and morph targets: vertices where the file's own pose puts them.
 #include <gmock/gmock.h>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

@@ -1,7 +1,7 @@
 // A binary glTF file that lies in memory, as in an .lxr file.
 #include <gmock/gmock.h>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

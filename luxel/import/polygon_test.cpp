@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "luxel/base/process_memory.h"
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

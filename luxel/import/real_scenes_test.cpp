@@ -1,7 +1,7 @@
 // The shared scenes, against the triangle counts that their README states.
 #include <gmock/gmock.h>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 #include "tests/support.h"
 
 namespace luxel::import {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

@@ -1,7 +1,7 @@
 // .stl files, as text and binary; units and axes of files that state neither.
 #include <gmock/gmock.h>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 namespace {

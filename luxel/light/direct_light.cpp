@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "luxel/base/check.h"
+#include "luxel/base/job.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
-#include "luxel/base/share_out.h"
 #include "luxel/light/kept_light.h"
 #include "luxel/light/light_device.h"
 #include "luxel/light/shadow_rays.h"
@@ -172,37 +172,20 @@ KeptStage kept_stage(const DirectParams& params, std::span<const uint32_t> which
   return {params.parts, digest.value()};
 }
 
-/// A part as bytes: the number of its rays, and its light.
-void put_part(std::span<const uint32_t> which, const DirectLight& direct, uint64_t rays,
-              ByteWriter& out) {
-  out.put_value(rays);
-  put_light(direct, which, out);
-}
-
-/// Returns the number of rays.
-std::optional<uint64_t> get_part(ByteReader& in, std::span<const uint32_t> which,
-                                 DirectLight& direct) {
-  const uint64_t rays = in.get_value<uint64_t>();
-  if (!get_light(in, which, direct)) return std::nullopt;
-  return rays;
-}
-
-/// Returns the number of rays.
-std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
-                                  std::span<const uint32_t> which, DirectLight& direct) {
-  const auto bytes = kept.find(part);
-  if (!bytes) return std::nullopt;
-  ByteReader in{*bytes};
-  const auto rays = get_part(in, which, direct);
-  return in.ended_well() ? rays : std::nullopt;
-}
-
-void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
-               const DirectLight& direct, uint64_t rays) {
-  if (!kept.wants()) return;
-  ByteWriter out;
-  put_part(which, direct, rays, out);
-  kept.keep(part, out.bytes);
+/// The parts of some of the elements, but for what finds their light.
+PartWork parts_of(std::span<const uint32_t> which, DirectLight& direct) {
+  const auto elements_of = [which](size_t part) {
+    const size_t begin = part * kPartElements;
+    return which.subspan(begin, std::min(kPartElements, which.size() - begin));
+  };
+  PartWork out;
+  out.count = (which.size() + kPartElements - 1) / kPartElements;
+  out.units = [=](size_t part) { return elements_of(part).size(); };
+  out.put = [=, &direct](size_t part, ByteWriter& to) { put_light(direct, elements_of(part), to); };
+  out.get = [=, &direct](size_t part, ByteReader& from) {
+    return get_light(from, elements_of(part), direct);
+  };
+  return out;
 }
 
 Receiver receiver_of(const transport::Elements& elements, size_t i, const DirectParams& params) {
@@ -216,23 +199,13 @@ void set_light(size_t element, const LightAt& light, DirectLight& direct) {
   direct.split_variance[element] = light.split_variance;
 }
 
-/// Keeps the parts of some of the elements, the first of which is number `first` of all. `rays`: of
-/// these elements, which every part gets a share of.
-void keep_parts(const KeptStage& kept, size_t first, std::span<const uint32_t> these,
-                const DirectLight& direct, uint64_t rays) {
-  for (size_t begin = 0; begin < these.size() && kept.wants(); begin += kPartElements) {
-    const auto part = these.subspan(begin, std::min(kPartElements, these.size() - begin));
-    keep_part(kept, (first + begin) / kPartElements, part, direct,
-              rays * part.size() / these.size());
-  }
-}
-
 /// direct_light_again() by the device, whose parts are kept for the processor. Errors: as that.
 Status light_again_on_device(const LitElements& in, std::span<const uint32_t> which,
                              const DirectParams& params, DirectLight& direct, Progress& progress) {
   constexpr size_t kAtATime = size_t(1) << 18;  // 20 MB, and 18 MB for the device
   static_assert(kAtATime % kPartElements == 0);
   const KeptStage kept = kept_stage(params, which);
+  const PartWork parts = parts_of(which, direct);
   std::vector<Receiver> receivers;
   std::vector<LightAt> light;
   progress.begin("direct light", which.size());
@@ -247,7 +220,10 @@ Status light_again_on_device(const LitElements& in, std::span<const uint32_t> wh
               in.device->light_at(receivers, {.samples = params.samples}, light, progress));
     for (size_t k = 0; k < these.size(); ++k) set_light(these[k], light[k], direct);
     direct.rays += rays;
-    keep_parts(kept, first, these, direct, rays);
+    // Every part gets a share of the rays.
+    for (size_t k = first; k < first + these.size(); k += kPartElements)
+      keep_part(kept, parts, k / kPartElements,
+                rays * parts.units(k / kPartElements) / these.size());
     progress.advance(these.size());
   }
   return stopped(progress);
@@ -295,37 +271,14 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
   if (in.device && !params.layers && params.sky_samples == 0)
     return light_again_on_device(in, which, params, direct, progress);
   const LookAgain again{in, params, {in.scene, in.lights, in.tracer}, direct};
-  const KeptStage kept = kept_stage(params, which);
-  const auto elements_of = [&](size_t part) {
-    const size_t begin = part * kPartElements;
-    return which.subspan(begin, std::min(kPartElements, which.size() - begin));
+  PartWork parts = parts_of(which, direct);
+  parts.compute = [&](size_t part) {
+    return again.look(which.subspan(part * kPartElements, parts.units(part)));
   };
-  const size_t parts = (which.size() + kPartElements - 1) / kPartElements;
-  std::vector<uint64_t> rays(parts);
   progress.begin("direct light", which.size());
-  LUXEL_TRY(const std::vector<uint32_t> own,
-            share_out(params.team, parts, progress, [&](size_t part) {
-              const std::span<const uint32_t> these = elements_of(part);
-              // A part that an earlier run has kept is not sampled again.
-              if (const auto found = find_part(kept, part, these, direct)) {
-                rays[part] = *found;
-                return progress.skip(these.size());
-              }
-              if (kept.leaves(part)) return progress.skip(these.size());
-              rays[part] = again.look(these);
-              keep_part(kept, part, these, direct, rays[part]);
-              progress.advance(these.size());
-            }));
-  const PieceExchange parts_of_team{
-      parts,
-      [&](size_t part, ByteWriter& out) { put_part(elements_of(part), direct, rays[part], out); },
-      [&](size_t part, uint32_t, ByteReader& bytes) {
-        const auto got = get_part(bytes, elements_of(part), direct);
-        rays[part] = got.value_or(0);
-        return got.has_value();
-      }};
-  LUXEL_TRY_STATUS(exchange(params.team, own, parts_of_team, progress));
-  direct.rays += std::accumulate(rays.begin(), rays.end(), uint64_t(0));
+  LUXEL_TRY(const uint64_t rays,
+            for_each_part({progress, kept_stage(params, which), params.team}, parts));
+  direct.rays += rays;
   return {};
 }
 

@@ -6,8 +6,8 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
+#include "luxel/base/job.h"
 #include "luxel/base/parallel.h"
-#include "luxel/base/share_out.h"
 #include "luxel/light/kept_light.h"
 #include "luxel/light/lit_points.h"
 #include "luxel/light/uneven_texels.h"
@@ -118,46 +118,6 @@ KeptStage kept_stage(const SupersampleParams& params, std::span<const uint32_t> 
   return {params.direct.parts, digest.value()};
 }
 
-/// A part of the texels.
-struct AveragedPart {
-  std::span<const uint32_t> which;
-  std::span<uint8_t> is_averaged;  ///< one flag per texel
-};
-
-/// A part as bytes: the number of its rays, which texels were averaged, and their light.
-void put_part(const AveragedPart& part, const DirectLight& direct, uint64_t rays, ByteWriter& out) {
-  out.put_value(rays);
-  out.put(std::span<const uint8_t>(part.is_averaged));
-  put_light(direct, part.which, out);
-}
-
-/// Returns the number of rays.
-std::optional<uint64_t> get_part(ByteReader& in, const AveragedPart& part, DirectLight& direct) {
-  const uint64_t rays = in.get_value<uint64_t>();
-  std::vector<uint8_t> flags(part.is_averaged.size());
-  in.get(std::span(flags));
-  if (!in.ok || !get_light(in, part.which, direct)) return std::nullopt;
-  std::copy(flags.begin(), flags.end(), part.is_averaged.begin());
-  return rays;
-}
-
-/// Returns the number of rays.
-std::optional<uint64_t> find_part(const KeptStage& kept, size_t number, const AveragedPart& part,
-                                  DirectLight& direct) {
-  const auto bytes = kept.find(number);
-  if (!bytes) return std::nullopt;
-  ByteReader in{*bytes};
-  return get_part(in, part, direct);
-}
-
-void keep_part(const KeptStage& kept, size_t number, const AveragedPart& part,
-               const DirectLight& direct, uint64_t rays) {
-  if (!kept.wants()) return;
-  ByteWriter out;
-  put_part(part, direct, rays, out);
-  kept.keep(number, out.bytes);
-}
-
 /// What averages light over the points of some texels.
 struct Averaging {
   const TexelScene& in;
@@ -170,10 +130,12 @@ struct Averaging {
   std::vector<uint8_t> near_back_faces, is_averaged;
 
   LightAsked asked() const { return {samples_per_point(params.direct.samples)}; }
-  AveragedPart part(size_t number) {
-    const size_t first = number * kSupersampleGrain;
-    const size_t count = std::min(kSupersampleGrain, which.size() - first);
-    return {which.subspan(first, count), std::span(is_averaged).subspan(first, count)};
+  std::span<const uint32_t> texels_of(size_t part) const {
+    const size_t first = part * kSupersampleGrain;
+    return which.subspan(first, std::min(kSupersampleGrain, which.size() - first));
+  }
+  std::span<uint8_t> is_averaged_of(size_t part) {
+    return std::span(is_averaged).subspan(part * kSupersampleGrain, texels_of(part).size());
   }
   uint64_t begin(size_t k, PointBuffers& work);
   uint64_t end(size_t k, PointBuffers& work);
@@ -227,6 +189,25 @@ uint64_t Averaging::end(size_t k, PointBuffers& work) {
   return rays;
 }
 
+/// The parts of the texels, but for what averages: which of them were, and their light.
+PartWork parts_of(Averaging& averaging) {
+  PartWork out;
+  out.count = (averaging.which.size() + kSupersampleGrain - 1) / kSupersampleGrain;
+  out.units = [&](size_t part) { return averaging.texels_of(part).size(); };
+  out.put = [&](size_t part, ByteWriter& to) {
+    to.put(std::span<const uint8_t>(averaging.is_averaged_of(part)));
+    put_light(averaging.direct, averaging.texels_of(part), to);
+  };
+  out.get = [&](size_t part, ByteReader& from) {
+    std::vector<uint8_t> flags(averaging.texels_of(part).size());
+    from.get(std::span(flags));
+    if (!from.ok || !get_light(from, averaging.texels_of(part), averaging.direct)) return false;
+    std::ranges::copy(flags, averaging.is_averaged_of(part).begin());
+    return true;
+  };
+  return out;
+}
+
 /// Averages on in.light_device, whose parts are kept for the processor. Returns the number of rays,
 /// which every part gets a share of. Errors: as average_texels().
 Result<uint64_t> average_on_device(Averaging& averaging, Progress& progress) {
@@ -237,10 +218,9 @@ Result<uint64_t> average_on_device(Averaging& averaging, Progress& progress) {
   LUXEL_TRY(const uint64_t rays,
             light_many_points(averaging.in, which.size(), size_t(averaging.params.points),
                               averaging.asked(), texels, progress));
-  for (size_t number = 0; number * kSupersampleGrain < which.size() && kept.wants(); ++number) {
-    const AveragedPart part = averaging.part(number);
-    keep_part(kept, number, part, averaging.direct, rays * part.which.size() / which.size());
-  }
+  const PartWork parts = parts_of(averaging);
+  for (size_t part = 0; part < parts.count && kept.wants(); ++part)
+    keep_part(kept, parts, part, rays * parts.units(part) / which.size());
   return rays;
 }
 
@@ -249,7 +229,7 @@ uint64_t average_part(Averaging& averaging, const DirectScene& lit, size_t numbe
   const size_t begin = number * kSupersampleGrain;
   PointBuffers work;
   uint64_t traced = 0;
-  for (size_t k = begin; k < begin + averaging.part(number).which.size(); ++k) {
+  for (size_t k = begin; k < begin + averaging.texels_of(number).size(); ++k) {
     work.receivers.clear();
     traced += averaging.begin(k, work);
     if (work.receivers.empty()) continue;
@@ -263,35 +243,11 @@ uint64_t average_part(Averaging& averaging, const DirectScene& lit, size_t numbe
 /// Errors: cancelled, another member of the team gives up.
 Result<uint64_t> average_in_parts(Averaging& averaging, Progress& progress) {
   const TexelScene& in = averaging.in;
-  DirectLight& direct = averaging.direct;
   const DirectScene lit{in.scene, in.lights, in.tracer};
-  const KeptStage kept = kept_stage(averaging.params, averaging.which, direct);
-  Team* team = averaging.params.direct.team;
-  const size_t parts = (averaging.which.size() + kSupersampleGrain - 1) / kSupersampleGrain;
-  std::vector<uint64_t> rays(parts);
-  LUXEL_TRY(const std::vector<uint32_t> own, share_out(team, parts, progress, [&](size_t number) {
-              const AveragedPart part = averaging.part(number);
-              if (const auto found = find_part(kept, number, part, direct)) {
-                rays[number] = *found;
-                return progress.skip(part.which.size());
-              }
-              if (kept.leaves(number)) return progress.skip(part.which.size());
-              rays[number] = average_part(averaging, lit, number);
-              keep_part(kept, number, part, direct, rays[number]);
-              progress.advance(part.which.size());
-            }));
-  const PieceExchange parts_of_team{parts,
-                                    [&](size_t number, ByteWriter& out) {
-                                      put_part(averaging.part(number), direct, rays[number], out);
-                                    },
-                                    [&](size_t number, uint32_t, ByteReader& bytes) {
-                                      const auto got =
-                                          get_part(bytes, averaging.part(number), direct);
-                                      rays[number] = got.value_or(0);
-                                      return got.has_value();
-                                    }};
-  LUXEL_TRY_STATUS(exchange(team, own, parts_of_team, progress));
-  return std::accumulate(rays.begin(), rays.end(), uint64_t(0));
+  PartWork parts = parts_of(averaging);
+  parts.compute = [&](size_t part) { return average_part(averaging, lit, part); };
+  const KeptStage kept = kept_stage(averaging.params, averaging.which, averaging.direct);
+  return for_each_part({progress, kept, averaging.params.direct.team}, parts);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "luxel/base/thread_team.h"
+#include "luxel/base/team_test_support.h"
 #include "luxel/scene/procedural.h"
 
 namespace luxel::transport {

@@ -1,7 +1,7 @@
 // Light that the members of a team work out together has the bits of one process's.
 #include <gmock/gmock.h>
 
-#include "luxel/base/thread_team.h"
+#include "luxel/base/team_test_support.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/gather_test_support.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/scene/shapes.h"
-#include "luxel/view/hemicube/hemicube_test_scene.h"
+#include "luxel/view/hemicube/mesh_test_support.h"
 
 namespace luxel::view {
 namespace {

@@ -2,13 +2,14 @@
 // hands over what it has by then. [Rodriguez06, sections 4.5.4 and 5.6]
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "luxel/base/progress.h"
+#include "luxel/base/worker.h"
 #include "luxel/pipeline/settings/settings.h"
 #include "luxel/solve/hemicube/exchange.h"
 #include "luxel/solve/hemicube/hemicube.h"
@@ -28,12 +29,15 @@ struct LightMesh {
 /// What has come since it was last asked for.
 struct HemicubeNews {
   /// First as it was read, then as it was laid out: charts are cut where walls stand on them.
-  std::shared_ptr<const ReadScene> read;
-  std::shared_ptr<const LightMesh> mesh;  ///< another one than before
-  std::vector<Rgb> irradiance;            ///< E of all its elements [W/m^2]; empty: nothing new
-  float exposure = 0;                     ///< at which the first view is readable; 0: nothing new
-  std::optional<std::string> said;        ///< why there is no light; a sentence
+  std::shared_ptr<const ReadScene> read{};
+  std::shared_ptr<const LightMesh> mesh{};  ///< another one than before
+  std::vector<Rgb> irradiance{};            ///< E of all its elements [W/m^2]; empty: nothing new
+  float exposure = 0;                       ///< at which the first view is readable; 0: nothing new
+  bool is_solved = false;
+  std::optional<std::string> said{};  ///< why there is no light; a sentence
 };
+/// What is newer takes the place of what is older.
+void merge(HemicubeNews newer, HemicubeNews& news);
 
 enum class HemicubeState : uint8_t { solving, paused, solved, failed };
 
@@ -44,16 +48,20 @@ class LiveHemicube {
   /// Begins to read the models, one scene of all of them, each where its file places it. Settings
   /// are those of `luxel bake`, settings.scene the first model; the light ends as that of
   /// `luxel bake --solver hemicube`, bit by bit.
-  static std::unique_ptr<LiveHemicube> begin(std::vector<std::filesystem::path> models,
-                                             const pipeline::BakeSettings& settings);
-  virtual ~LiveHemicube() = default;
+  LiveHemicube(std::vector<std::filesystem::path> models, const pipeline::BakeSettings& settings);
 
-  virtual HemicubeNews take() = 0;
-  virtual HemicubeState state() const = 0;
-  virtual Progress::Snapshot snapshot() const = 0;
-  virtual void pause(bool is_paused) = 0;
+  HemicubeNews take();
+  /// At its end once the last news are taken.
+  HemicubeState state() const;
+  Progress::Snapshot snapshot() const { return worker_.snapshot(); }
+  void pause(bool is_paused);
   /// Stops once so large a share of a mesh's elements has looked around in a pass; > 1: never.
-  virtual void pause_at(double share) = 0;
+  void pause_at(double share) { pause_at_ = share; }
+
+ private:
+  std::atomic<double> pause_at_{2};
+  bool is_solved_ = false;  ///< by the news that were taken
+  Worker<std::vector<std::filesystem::path>, HemicubeNews> worker_;
 };
 
 }  // namespace luxel::view

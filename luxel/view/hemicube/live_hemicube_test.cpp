@@ -11,8 +11,8 @@
 #include "luxel/pipeline/solver/vertex_lit.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/view/hemicube/growing_light.h"
-#include "luxel/view/hemicube/hemicube_test_scene.h"
-#include "luxel/view/hemicube/report_worker.h"
+#include "luxel/view/hemicube/mesh_test_support.h"
+#include "luxel/view/hemicube/vertex_report.h"
 
 namespace luxel::view {
 namespace {
@@ -37,12 +37,7 @@ pipeline::BakeSettings small_settings() {
 HemicubeNews come_to_rest(LiveHemicube& live) {
   HemicubeNews all;
   for (bool is_at_rest = false;;) {
-    HemicubeNews news = live.take();
-    if (news.read) all.read = std::move(news.read);
-    if (news.mesh) all.mesh = std::move(news.mesh);
-    if (!news.irradiance.empty()) all.irradiance = std::move(news.irradiance);
-    if (news.exposure > 0) all.exposure = news.exposure;
-    if (news.said) all.said = std::move(news.said);
+    merge(live.take(), all);
     if (is_at_rest) return all;
     is_at_rest = live.state() != HemicubeState::solving;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -51,7 +46,7 @@ HemicubeNews come_to_rest(LiveHemicube& live) {
 
 TEST(LiveHemicube, EndsWithTheBitsOfABake) {
   pipeline::BakeSettings settings = small_settings();
-  const auto live = LiveHemicube::begin({settings.scene}, settings);
+  const auto live = std::make_unique<LiveHemicube>(std::vector{settings.scene}, settings);
   const HemicubeNews news = come_to_rest(*live);
   ASSERT_EQ(live->state(), HemicubeState::solved) << news.said.value_or("");
   EXPECT_GT(news.exposure, 0);
@@ -73,7 +68,7 @@ TEST(LiveHemicube, EndsWithTheBitsOfABake) {
 TEST(LiveHemicube, StopsInTheMiddleAndGoesOn) {
   pipeline::BakeSettings settings = small_settings();
   settings.own.of<hemicube::HemicubeParams>().max_error = 0;
-  const auto live = LiveHemicube::begin({settings.scene}, settings);
+  const auto live = std::make_unique<LiveHemicube>(std::vector{settings.scene}, settings);
   live->pause_at(0.5);
   HemicubeNews news = come_to_rest(*live);
   ASSERT_EQ(live->state(), HemicubeState::paused);
@@ -98,11 +93,14 @@ TEST(LiveHemicube, SeveralModelsAreOneScene) {
   settings.own.of<hemicube::HemicubeParams>().max_elements = 2000;
   settings.own.of<hemicube::HemicubeParams>().max_error = 0;
   const std::filesystem::path box = of_tree("radiosity-box.glb");
-  const auto one = come_to_rest(*LiveHemicube::begin({settings.scene}, settings));
-  const auto two = come_to_rest(*LiveHemicube::begin({settings.scene, box}, settings));
+  const auto one =
+      come_to_rest(*std::make_unique<LiveHemicube>(std::vector{settings.scene}, settings));
+  const auto two =
+      come_to_rest(*std::make_unique<LiveHemicube>(std::vector{settings.scene, box}, settings));
   ASSERT_TRUE(one.read && two.read) << two.said.value_or("");
   EXPECT_GT(two.read->scene.instances.size(), one.read->scene.instances.size());
-  const auto none = come_to_rest(*LiveHemicube::begin({settings.scene, "absent.glb"}, settings));
+  const auto none = come_to_rest(*std::make_unique<LiveHemicube>(
+      std::vector<std::filesystem::path>{settings.scene, "absent.glb"}, settings));
   EXPECT_NE(none.said.value_or("").find("absent.glb"), std::string::npos);
 }
 
@@ -140,13 +138,14 @@ TEST(GrowingLight, GrowsVertexByVertex) {
 TEST(ReportWorker, AnswersTheLastQuestionAndEndsAtOnce) {
   const auto mesh = testing::mesh_in(scene::cornell_box(), 0.1f);
   const std::vector<Rgb> light(mesh->receivers.size(), Rgb{1, 1, 1});
-  auto worker = ReportWorker::begin();
+  auto worker = begin_reports();
   for (const int size : {512, 256, 16}) worker->ask({mesh, light, 7, size});
-  std::optional<ReportNews> news;
-  while (worker->is_busy() && !news) news = worker->take();
-  ASSERT_TRUE(news && news->report) << "nothing came";
-  EXPECT_EQ(news->report->resolution, 16);
-  EXPECT_EQ(news->report->element, 7u);
+  worker->wait();
+  const auto come = worker->take();
+  ASSERT_EQ(come.size(), 1u);
+  ASSERT_TRUE(come[0]) << come[0].error().message;
+  EXPECT_EQ(come[0]->report.resolution, 16);
+  EXPECT_EQ(come[0]->report.element, 7u);
   worker->ask({mesh, light, 7, 1024});
   const auto begin = std::chrono::steady_clock::now();
   worker.reset();

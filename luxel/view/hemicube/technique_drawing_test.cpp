@@ -13,7 +13,7 @@
 #include "luxel/scene/procedural.h"
 #include "luxel/view/draw/device_test_support.h"
 #include "luxel/view/hemicube/faces_picture.h"
-#include "luxel/view/hemicube/hemicube_test_scene.h"
+#include "luxel/view/hemicube/mesh_test_support.h"
 #include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view {

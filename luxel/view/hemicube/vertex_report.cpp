@@ -105,6 +105,16 @@ Result<VertexReport> report_on(const LightMesh& mesh, std::vector<Rgb> irradianc
   return out;
 }
 
+std::unique_ptr<ReportWorker> begin_reports() {
+  return std::make_unique<ReportWorker>(
+      [](ReportRequest asked, const ReportWorker::Hand& hand, Progress& progress) -> Status {
+        LUXEL_TRY(VertexReport report, report_on(*asked.mesh, std::move(asked.irradiance),
+                                                 asked.element, asked.resolution, progress));
+        hand({std::move(asked.mesh), std::move(report)});
+        return {};
+      });
+}
+
 std::array<uint32_t, kFactorBins> histogram_of_row(std::span<const float> row) {
   std::array<uint32_t, kFactorBins> out{};
   for (const float factor : row) {

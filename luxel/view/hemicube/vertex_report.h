@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "luxel/base/worker.h"
 #include "luxel/solve/hemicube/item_buffer.h"
 #include "luxel/view/hemicube/live_hemicube.h"
 
@@ -37,6 +38,21 @@ struct VertexReport {
 /// `irradiance` is E of all elements of the mesh. Errors: cancelled.
 Result<VertexReport> report_on(const LightMesh& mesh, std::vector<Rgb> irradiance, uint32_t element,
                                int resolution, Progress& progress);
+
+/// Arguments of report_on().
+struct ReportRequest {
+  std::shared_ptr<const LightMesh> mesh;
+  std::vector<Rgb> irradiance;
+  uint32_t element = 0;
+  int resolution = 64;
+};
+/// A report, and of which mesh it is.
+struct ReportOfMesh {
+  std::shared_ptr<const LightMesh> mesh;
+  VertexReport report;
+};
+using ReportWorker = Worker<ReportRequest, ReportOfMesh>;
+std::unique_ptr<ReportWorker> begin_reports();
 
 /// The form factors from an element to the scene's triangles, in their order
 /// (scene::first_triangles), in closed form; none where more than some 2,000 can be seen, where

@@ -10,7 +10,7 @@
 #include "luxel/scene/shapes.h"
 #include "luxel/view/draw/surface_corners.h"
 #include "luxel/view/hemicube/faces_picture.h"
-#include "luxel/view/hemicube/hemicube_test_scene.h"
+#include "luxel/view/hemicube/mesh_test_support.h"
 
 namespace luxel::view {
 namespace {

@@ -74,7 +74,7 @@ void select_link(const ToolPlace& at, const Walk& walk, const Examined& examined
 void ask_for_discontinuity(const h::FacePoint& at, const Nearness& nearness,
                            const Examined& examined, SelectionDesk& desk) {
   desk.asked.discontinuity = {at, nearness};
-  desk.worker->ask(QuestionKind::discontinuity, [=](Progress&) -> Result<Answer> {
+  desk.probers.discontinuity->ask([=](Progress&) -> Result<DiscontinuityFacts> {
     const SolutionView& view = examined.view;
     h::DiscontinuityParams params = view.discontinuity;
     params.least_weight = 0;
@@ -86,27 +86,23 @@ void ask_for_discontinuity(const h::FacePoint& at, const Nearness& nearness,
       weight.push_back(h::weight_of(line, view.solution, view.scene));
     const auto found = discontinuity_near(lines, weight, nearness);
     if (!found)
-      return Answer(fmt::format("none of the {} discontinuities of {} is near", lines.size(),
-                                name_of_face(view, at.face)));
-    return Answer(facts_of(view, at.face, lines[*found]));
+      return fail(ErrorCode::bad_input, "none of the {} discontinuities of {} is near",
+                  lines.size(), name_of_face(view, at.face));
+    return facts_of(view, at.face, lines[*found]);
   });
 }
 
 void ask_for_light(const h::FacePoint& at, const Examined& examined, SelectionDesk& desk) {
   desk.asked.light = at;
-  desk.worker->ask(QuestionKind::light, [=](Progress& progress) -> Result<Answer> {
-    LUXEL_TRY(LightProbe probe, probe_light(examined.view, at, examined.shown, progress));
-    return Answer(std::move(probe));
-  });
+  desk.probers.light->ask(
+      [=](Progress& progress) { return probe_light(examined.view, at, examined.shown, progress); });
 }
 
 void ask_for_sources(const h::FacePoint& at, const Examined& examined, SelectionDesk& desk) {
   constexpr size_t kMostSources = 4;
   desk.asked.sources = at;
-  desk.worker->ask(QuestionKind::sources, [=](Progress& progress) -> Result<Answer> {
-    LUXEL_TRY(BackprojectionProbe probe, probe_sources(examined.view, at, kMostSources, progress));
-    return Answer(std::move(probe));
-  });
+  desk.probers.sources->ask(
+      [=](Progress& progress) { return probe_sources(examined.view, at, kMostSources, progress); });
 }
 
 /// The polygon that a graph in space stands on: of the selected element or triangle.
@@ -125,14 +121,14 @@ void ask_for_graph(const CurveLine& line, const h::Polygon& over, const Examined
                    SelectionDesk& desk) {
   constexpr size_t kCells = 16;
   desk.asked.graph = line, desk.asked.is_across = !over.empty();
-  desk.worker->ask(QuestionKind::graph, [=](Progress& progress) -> Result<Answer> {
+  desk.probers.graph->ask([=](Progress& progress) -> Result<Graph> {
     Graph out;
     LUXEL_TRY(out.curve, curve_along(examined.view, line, examined.shown, {}, progress));
     if (!over.empty()) {
       LUXEL_TRY(out.surface, surface_over(examined.view, over, line.face, kCells, examined.shown,
                                           {.tolerance = 1e-4}, progress));
     }
-    return Answer(std::move(out));
+    return out;
   });
 }
 
@@ -216,22 +212,61 @@ Selection carried_over(const Selection& from, const Examined& examined) {
   return out;
 }
 
-struct TakeAnswer {
-  SelectionDesk& desk;
+template <class Found>
+std::unique_ptr<Prober<Found>> begin_prober() {
+  return std::make_unique<Prober<Found>>(
+      [](const auto& probe, const auto& hand, Progress& progress) -> Status {
+        LUXEL_TRY(Found found, probe(progress));
+        hand(std::move(found));
+        return {};
+      });
+}
 
-  void operator()(const std::string& said) const {
-    desk.said = said, desk.asked.discontinuity.reset();
+void forget(Probers& probers) {
+  probers.discontinuity->forget(), probers.light->forget();
+  probers.sources->forget(), probers.graph->forget();
+}
+
+/// Calls keep(found) with what a prober has found. True: there is something to be told.
+template <class Found, class Keep>
+bool take_from(Prober<Found>& prober, std::string& said, const Keep& keep) {
+  std::vector<Result<Found>> come = prober.take();
+  for (Result<Found>& found : come) {
+    if (found)
+      keep(std::move(*found));
+    else
+      said = found.error().message;
   }
-  void operator()(DiscontinuityFacts& facts) const {
-    desk.asked.discontinuity.reset();
+  return !come.empty();
+}
+
+bool take_found(SelectionDesk& desk) {
+  const Probers& from = desk.probers;
+  const bool line = take_from(*from.discontinuity, desk.said, [&](DiscontinuityFacts facts) {
     desk.selected = {}, desk.selected.discontinuity = std::move(facts);
-  }
-  void operator()(LightProbe& probe) const { desk.probed.light = std::move(probe); }
-  void operator()(BackprojectionProbe& probe) const { desk.probed.sources = std::move(probe); }
-  void operator()(Graph& graph) const { desk.probed.graph = std::move(graph); }
-};
+  });
+  if (line) desk.asked.discontinuity.reset();
+  const bool light = take_from(*from.light, desk.said,
+                               [&](LightProbe found) { desk.probed.light = std::move(found); });
+  const bool sources = take_from(*from.sources, desk.said, [&](BackprojectionProbe found) {
+    desk.probed.sources = std::move(found);
+  });
+  const bool graph =
+      take_from(*from.graph, desk.said, [&](Graph found) { desk.probed.graph = std::move(found); });
+  return line || light || sources || graph;
+}
 
 }  // namespace
+
+Probers begin_probing() {
+  return {begin_prober<DiscontinuityFacts>(), begin_prober<LightProbe>(),
+          begin_prober<BackprojectionProbe>(), begin_prober<Graph>()};
+}
+
+bool is_busy(const Probers& probers) {
+  return probers.discontinuity->is_busy() || probers.light->is_busy() ||
+         probers.sources->is_busy() || probers.graph->is_busy();
+}
 
 void step_selection(SelectionStep step, const Examined& examined, SelectionDesk& desk) {
   follow(examined, desk);
@@ -255,7 +290,7 @@ void step_selection(SelectionStep step, const Examined& examined, SelectionDesk&
 }
 
 void select_nothing(SelectionDesk& desk) {
-  desk.worker->forget();
+  forget(desk.probers);
   desk.selected = {}, desk.probed = {}, desk.asked = {};
   desk.said.clear();
 }
@@ -285,7 +320,7 @@ void use_tool(const ToolUsed& used, const Walk& walk, const Examined& examined,
 bool follow(const Examined& examined, SelectionDesk& desk) {
   bool has_news = desk.solution != examined.number;
   if (has_news) {
-    desk.worker->forget();
+    forget(desk.probers);
     desk.solution = examined.number;
     desk.selected = carried_over(desk.selected, examined);
     const Inquiries asked = desk.asked;
@@ -299,10 +334,7 @@ bool follow(const Examined& examined, SelectionDesk& desk) {
                     asked.is_across ? selected_polygon(examined, desk.selected) : h::Polygon{},
                     examined, desk);
   }
-  for (Answer& answer : desk.worker->take()) {
-    std::visit(TakeAnswer{desk}, answer);
-    has_news = true;
-  }
+  has_news |= take_found(desk);
   desk.changes += has_news;
   return has_news;
 }

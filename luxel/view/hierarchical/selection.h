@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "luxel/view/hierarchical/probe_worker.h"
+#include "luxel/base/worker.h"
+#include "luxel/view/hierarchical/curve.h"
 #include "luxel/view/hierarchical/selection_shapes.h"
 #include "luxel/view/model/events.h"
 #include "luxel/view/model/walk.h"
@@ -34,6 +35,12 @@ struct Selection {
   bool has_element() const { return !path.empty(); }
 };
 
+/// A graph of light: along a line, and over an element or a triangle where one is selected.
+struct Graph {
+  Curve curve;
+  std::optional<LightSurface> surface;
+};
+
 /// What probes have told.
 struct Probed {
   std::optional<LightProbe> light;
@@ -50,7 +57,21 @@ struct Inquiries {
   bool is_across = false;  ///< the graph, what is selected
 };
 
-/// All of it: tools, what they have found, and a thread that computes.
+/// Computes what a request says; that holds all it looks at.
+template <class Found>
+using Prober = Worker<std::function<Result<Found>(Progress&)>, Found>;
+
+/// The window does not wait for exact light.
+struct Probers {
+  std::unique_ptr<Prober<DiscontinuityFacts>> discontinuity;
+  std::unique_ptr<Prober<LightProbe>> light;
+  std::unique_ptr<Prober<BackprojectionProbe>> sources;
+  std::unique_ptr<Prober<Graph>> graph;
+};
+Probers begin_probing();
+bool is_busy(const Probers& probers);
+
+/// All of it: tools, what they have found, and threads that compute.
 struct SelectionDesk {
   InsideTool tool = InsideTool::none;
   Selection selected;
@@ -64,7 +85,7 @@ struct SelectionDesk {
   Vec2 pointer{};               ///< [pixels]
   std::optional<Vec2> pressed;  ///< where a button went down, while it is down
   bool drags_graph = false;
-  std::unique_ptr<ProbeWorker> worker = ProbeWorker::begin();
+  Probers probers = begin_probing();
 };
 
 /// True: the event is no longer the walk's. A click uses the tool; with the right button it probes

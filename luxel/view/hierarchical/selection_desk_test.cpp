@@ -37,11 +37,11 @@ Walk walk_above() {
 /// Waits for all answers, for some seconds at most.
 void finish(const Examined& examined, SelectionDesk& desk) {
   follow(examined, desk);
-  for (int k = 0; k < 2000 && desk.worker->is_at_work(); ++k) {
+  for (int k = 0; k < 2000 && is_busy(desk.probers); ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     follow(examined, desk);
   }
-  EXPECT_FALSE(desk.worker->is_at_work());
+  EXPECT_FALSE(is_busy(desk.probers));
 }
 
 void click(Button button, Vec2 at, const Walk& walk, SelectionDesk& desk, Vec2 by = {}) {
@@ -234,31 +234,6 @@ TEST(SelectionDesk, SaysWhatIsMissing) {
   EXPECT_THAT(desk.said, HasSubstr("a graph needs"));
   use_tool({InsideTool::irradiance, ToolPlace(Vec2{100, 1e6f}), {}}, walk, examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("no surface"));
-}
-
-TEST(ProbeWorker, AnswersTheNewestQuestionOfAKind) {
-  const auto worker = ProbeWorker::begin();
-  std::atomic<bool> has_begun = false;
-  const auto slow = [&](Progress& progress) -> Result<Answer> {
-    has_begun = true, has_begun.notify_all();
-    while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return fail(ErrorCode::cancelled, "cancelled");
-  };
-  const auto quick = [](const char* text) {
-    return [text](Progress&) -> Result<Answer> { return Answer(std::string(text)); };
-  };
-  worker->ask(QuestionKind::light, slow);
-  has_begun.wait(false);
-  worker->ask(QuestionKind::graph, quick("graph"));
-  worker->ask(QuestionKind::light, quick("light"));
-  std::vector<std::string> said;
-  for (int k = 0; k < 2000 && said.size() < 2; ++k) {
-    for (const Answer& answer : worker->take()) said.push_back(std::get<std::string>(answer));
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_THAT(said, ::testing::ElementsAre("graph", "light"));
-  EXPECT_FALSE(worker->is_at_work());
-  worker->ask(QuestionKind::light, slow);  // the destructor ends it
 }
 
 TEST(Events, OfToolsAreRead) {

@@ -1,13 +1,12 @@
 #include "luxel/view/hierarchical/workshop.h"
 
-#include <condition_variable>
 #include <deque>
 #include <mutex>
-#include <thread>
+#include <variant>
 
 #include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
-#include "luxel/base/thread_priority.h"
+#include "luxel/base/worker.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/render/overlays.h"
 #include "luxel/solve/hierarchical/represent.h"
@@ -43,21 +42,14 @@ struct Asked {
 
 class WorkshopThread : public Workshop {
  public:
-  explicit WorkshopThread(const pipeline::BakeSettings& settings) : settings_(settings) {
+  explicit WorkshopThread(const pipeline::BakeSettings& settings)
+      : settings_(settings), worker_([this](Next, const auto&, Progress& progress) {
+          do_next(progress);
+          return Status();
+        }) {
     const auto& own = settings.own.of<pipeline::HierarchicalSettings>();
     mesh_ = own.mesh;
-    asked_.push_back({Ask::begin, own});
-    thread_ = std::thread([this] { run(); });
-  }
-  ~WorkshopThread() override {
-    {
-      const std::scoped_lock lock(mutex_);
-      ends_ = true;
-      asked_.clear();
-      progress_->request_cancel();
-    }
-    changed_.notify_all();
-    thread_.join();
+    ask(Ask::begin, own);
   }
 
   WorkshopNews take() override {
@@ -65,37 +57,33 @@ class WorkshopThread : public Workshop {
     return std::exchange(news_, {});
   }
   void ask(Ask what, const pipeline::HierarchicalSettings& settings) override {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (has_failed_) return;
-      asked_.push_back({what, settings});
-      if (now_ != Task::step) progress_->request_cancel();
-    }
-    changed_.notify_all();
+    const std::scoped_lock lock(mutex_);
+    if (has_failed_) return;
+    asked_.push_back({what, settings});
+    if (now_ != Task::step) end_task();
+    worker_.ask_next({});
   }
   void interrupt() override {
     const std::scoped_lock lock(mutex_);
     if (!piece_) return;  // without the first there is nothing to see
     asked_.clear();
-    if (now_ == Task::step) progress_->request_cancel();
+    if (now_ == Task::step) end_task();
   }
   void want(const Wanted& wanted, const h::MeshParams& mesh) override {
-    {
-      const std::scoped_lock lock(mutex_);
-      const bool is_another_mesh = !is_same_mesh(mesh, mesh_);
-      const bool is_another_view = !is_same_view(wanted.exact, wanted_.exact);
-      wanted_ = wanted;
-      if (is_another_mesh) {
-        mesh_ = mesh;
-        if (piece_) drop_meshes();
-      }
-      if (is_another_view) exact_.reset();
-      if (is_another_mesh || is_another_view) gives_up_ = false;
-      if ((is_another_mesh && now_ != Task::step) || (is_another_view && now_ == Task::exact) ||
-          !is_wanted(now_))
-        progress_->request_cancel();
+    const std::scoped_lock lock(mutex_);
+    const bool is_another_mesh = !is_same_mesh(mesh, mesh_);
+    const bool is_another_view = !is_same_view(wanted.exact, wanted_.exact);
+    wanted_ = wanted;
+    if (is_another_mesh) {
+      mesh_ = mesh;
+      if (piece_) drop_meshes();
     }
-    changed_.notify_all();
+    if (is_another_view) exact_.reset();
+    if (is_another_mesh || is_another_view) gives_up_ = false;
+    if ((is_another_mesh && now_ != Task::step) || (is_another_view && now_ == Task::exact) ||
+        !is_wanted(now_))
+      end_task();
+    worker_.ask_next({});
   }
   WorkshopState state() const override {
     const std::scoped_lock lock(mutex_);
@@ -108,10 +96,7 @@ class WorkshopThread : public Workshop {
     const std::scoped_lock lock(mutex_);
     return now_ == Task::step || !asked_.empty();
   }
-  Progress::Snapshot snapshot() const override {
-    const std::scoped_lock lock(mutex_);
-    return progress_->snapshot();
-  }
+  Progress::Snapshot snapshot() const override { return worker_.snapshot(); }
 
  private:
   // What both threads use, under the mutex.
@@ -150,29 +135,33 @@ class WorkshopThread : public Workshop {
     drops_known_ = true;
   }
 
+  /// Nothing ends that has not begun.
+  void end_task() {
+    if (now_ != Task::nothing) worker_.stop();
+  }
+
   // The thread's own.
 
-  void run() {
-    lower_priority_of_this_thread();
+  /// Does what comes next, and asks for what comes after it.
+  void do_next(Progress& progress) {
     const ThreadLimit threads(settings_.threads);
-    for (;;) {
-      Task task = Task::nothing;
-      std::optional<Asked> asked;
-      {
-        std::unique_lock lock(mutex_);
-        now_ = Task::nothing;
-        changed_.wait(lock, [this] { return ends_ || next() != Task::nothing; });
-        if (ends_) return;
-        now_ = task = next();
-        if (task == Task::step) asked = asked_.front(), asked_.pop_front();
-        progress_ = std::make_shared<Progress>();
-        from_ = piece_;
-        params_ = mesh_;
-        if (std::exchange(drops_known_, false)) known_.of_face.clear();
-      }
-      const Status done = tried(task, asked);
-      if (!done && done.error().code != ErrorCode::cancelled) has_error(task, done.error().message);
+    Task task = Task::nothing;
+    std::optional<Asked> asked;
+    {
+      const std::scoped_lock lock(mutex_);
+      now_ = task = next();
+      if (task == Task::nothing) return;
+      if (task == Task::step) asked = asked_.front(), asked_.pop_front();
+      from_ = piece_;
+      params_ = mesh_;
+      if (std::exchange(drops_known_, false)) known_.of_face.clear();
     }
+    progress_ = &progress;
+    const Status done = tried(task, asked);
+    if (!done && done.error().code != ErrorCode::cancelled) has_error(task, done.error().message);
+    const std::scoped_lock lock(mutex_);
+    now_ = Task::nothing;
+    worker_.ask_next({});
   }
   Status tried(Task task, const std::optional<Asked>& asked) try {
     return task == Task::step ? solve(*asked) : make(task);
@@ -285,26 +274,27 @@ class WorkshopThread : public Workshop {
     return {};
   }
 
+  struct Next {};  ///< what that is, next() tells
+
   const pipeline::BakeSettings settings_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();  ///< of the task
   WorkshopNews news_;
   std::deque<Asked> asked_;
   Wanted wanted_;
   h::MeshParams mesh_;
   std::shared_ptr<const Piece> piece_;
   std::shared_ptr<const ExactPicture> exact_;
-  Task now_ = Task::step;
-  bool ends_ = false, has_failed_ = false, gives_up_ = false, drops_known_ = false;
+  Task now_ = Task::nothing;
+  bool has_failed_ = false, gives_up_ = false, drops_known_ = false;
 
+  Progress* progress_ = nullptr;  ///< of the task
   std::shared_ptr<const ReadScene> read_;
   std::shared_ptr<const Piece> from_;  ///< what the task begins with
   h::MeshParams params_;               ///< of the task
   h::Known known_;                     ///< by the light of piece_
   KnownRounds known_rounds_;           ///< coarser
   size_t pixels_ = kFirstPixels;
-  std::thread thread_;  ///< the last: it uses all of the others
+  Worker<Next, std::monostate> worker_;  ///< the last: its thread uses all of the others
 };
 
 }  // namespace

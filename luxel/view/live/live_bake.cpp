@@ -1,14 +1,11 @@
 #include "luxel/view/live/live_bake.h"
 
-#include <condition_variable>
 #include <mutex>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
-#include "luxel/base/check.h"
 #include "luxel/base/errands.h"
-#include "luxel/base/thread_priority.h"
+#include "luxel/base/worker.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/solver/bake_options.h"
@@ -21,27 +18,45 @@ namespace {
 /// The height of the picture whose texels come first; only its shape counts.
 constexpr int kViewHeight = 1000;
 
-class Worker : public LiveBake {
+/// A scene that has become another one.
+struct Edit {
+  std::optional<SceneNow> now;  ///< none: the file as it is
+  uint64_t number = 0;          ///< counts edits
+};
+
+/// A bake that has come to its end, and how it went.
+struct Baked {
+  std::shared_ptr<const pipeline::Bake> bake;
+  std::shared_ptr<const Progress> progress;
+};
+
+class LiveWorker : public LiveBake {
  public:
-  explicit Worker(const pipeline::BakeSettings& settings) : settings_(settings) {
+  explicit LiveWorker(const pipeline::BakeSettings& settings)
+      : settings_(settings),
+        saving_([this](const Baked& baked, const Saver::Hand& hand, Progress& progress) {
+          return write(baked, hand, progress);
+        }),
+        baking_([this](Edit edit, const Baker::Hand& hand, Progress& progress) {
+          return bake(std::move(edit), hand, progress);
+        }) {
     of_edits_.outside = {};  // the scene has it
-    thread_ = std::thread([this] { work(); });
+    baking_.ask({});
   }
-  ~Worker() override {
-    {
-      const std::scoped_lock lock(mutex_);
-      is_ending_ = true;
-      ends_.request_cancel();
-      progress_->request_cancel();
-      if (saving_) saving_->request_cancel();
-    }
-    changed_.notify_all();
-    thread_.join();
-  }
+  ~LiveWorker() override { ends_.request_cancel(); }
 
   LiveNews take() override {
-    const std::scoped_lock lock(mutex_);
-    return std::exchange(news_, {});
+    LiveNews out;
+    const auto add = [&](std::vector<Result<LiveNews>> come) {
+      for (Result<LiveNews>& news : come) {
+        if (news)
+          merge(std::move(*news), out);
+        else
+          out.said = news.error().message;
+      }
+    };
+    add(baking_.take()), add(saving_.take());
+    return out;
   }
   void look(const scene::Camera& camera, float aspect) override {
     auto eye =
@@ -51,21 +66,18 @@ class Worker : public LiveBake {
   }
   LiveState state() const override {
     const std::scoped_lock lock(mutex_);
-    return state_ == LiveState::baking && is_paused_ ? LiveState::paused : state_;
+    if (state_ != LiveState::baking) return state_;
+    if (!baking_.is_at_work()) return LiveState::failed;
+    return is_paused_ ? LiveState::paused : LiveState::baking;
   }
   Progress::Snapshot snapshot() const override {
-    const std::scoped_lock lock(mutex_);
-    return saving_ ? saving_->snapshot() : progress_->snapshot();
+    return saving_.is_at_work() ? saving_.snapshot() : baking_.snapshot();
   }
-  std::vector<std::string> notes() const override {
-    const std::scoped_lock lock(mutex_);
-    return progress_->notes(0);
-  }
+  std::vector<std::string> notes() const override { return baking_.progress()->notes(0); }
   void pause(bool is_paused) override {
     const std::scoped_lock lock(mutex_);
     is_paused_ = is_paused;
-    // What is cancelled must not be held.
-    if (state_ == LiveState::baking && !edit_) progress_->set_paused(is_paused);
+    if (state_ == LiveState::baking) baking_.set_paused(is_paused);
   }
   void rest(bool is_resting) override {
     const std::scoped_lock lock(mutex_);
@@ -75,61 +87,45 @@ class Worker : public LiveBake {
   void edit(const SceneNow& now) override {
     const std::scoped_lock lock(mutex_);
     if (!is_read_) return;
-    edit_ = now;
     state_ = LiveState::baking;
-    progress_->request_cancel();
-    changed_.notify_all();
+    baking_.ask({now, ++edits_});
   }
   void save() override {
     const std::scoped_lock lock(mutex_);
-    if (state_ != LiveState::baked) return;
-    asks_to_save_ = true;
-    changed_.notify_all();
+    if (state_ == LiveState::baked) saving_.ask(baked_);
   }
-  void wait() override {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !is_busy_ && !edit_ && !asks_to_save_; });
-  }
+  void wait() override { baking_.wait(), saving_.wait(); }
 
  private:
-  void work() {
-    lower_priority_of_this_thread();
-    guarded([this] { bake_file(); });
-    while (wait_for_work()) guarded([this] { edit_ ? bake_edit() : write(); });
-  }
-  /// False: the thread is to end.
-  bool wait_for_work() {
-    std::unique_lock lock(mutex_);
-    is_busy_ = false;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return is_ending_ || edit_ || asks_to_save_; });
-    is_busy_ = true;
-    return !is_ending_;
-  }
-  template <typename Body>
-  void guarded(const Body& body) try {
-    body();
-  } catch (const std::bad_alloc&) {
-    has_failed("out of memory");
-  }
+  using Baker = Worker<Edit, LiveNews>;
+  using Saver = Worker<Baked, LiveNews>;
 
-  void bake_file() {
-    BakeRun run(settings_, watcher_, *progress_);
+  Status bake(Edit edit, const Baker::Hand& hand, Progress& progress) {
+    const RunWatcher watcher{
+        hand, [this](const light::TexelScene& in, size_t element) { return is_seen(in, element); }};
+    const Status done =
+        edit.now ? bake_edit(edit, watcher, progress) : bake_file(watcher, progress);
+    // An edit that has come meanwhile is no failure.
+    return done || is_newest(edit) ? done : Status();
+  }
+  Status bake_file(const RunWatcher& watcher, Progress& progress) {
+    BakeRun run(settings_, watcher, progress);
     pipeline::BakeObserver observer;
     observer.on_read = [&](const scene::Scene& scene) {
       auto read = read_scene(scene, settings_, TracedFor::edits);
       if (!read) return;  // the bake ends with the same error
       has_read(*read);
-      progress_->begin("draft", 0);
+      progress.begin("draft", 0);
       // Without a draft, the window waits for the bake itself.
-      if (run.begin(*read, kFirstDraft, *progress_)) observer.guess = run.observer().guess;
+      if (run.begin(*read, kFirstDraft, progress)) observer.guess = run.observer().guess;
       has_draft();
     };
     observer.on_estimate = run.observer().on_estimate;
     observer.on_bounce = run.observer().on_bounce;
-    observer.is_watched = watcher_.is_seen;
+    observer.is_watched = watcher.is_seen;
     pipeline::BakeCache cache(settings_, pipeline::settings_of_kept_bake(settings_));
-    end(run, pipeline::bake_scene(settings_, *progress_, {nullptr, &cache}, observer), cache);
+    return end({}, run, pipeline::bake_scene(settings_, progress, {nullptr, &cache}, observer),
+               cache, progress);
   }
 
   void has_read(std::shared_ptr<const ReadScene> read) {
@@ -148,67 +144,67 @@ class Worker : public LiveBake {
   void end_early() {
     if (!is_resting_) return;
     ends_early_ = true;
-    progress_->request_cancel();
+    baking_.stop();
   }
 
   /// The draft comes to its end though there are other edits: it is soon there.
-  void bake_edit() {
-    SceneNow now;
-    const std::shared_ptr<Progress> progress = begin_edit(now);
-    BakeRun run(of_edits_, watcher_, *progress);
+  Status bake_edit(const Edit& edit, const RunWatcher& watcher, Progress& progress) {
+    begin_edit();
+    BakeRun run(of_edits_, watcher, progress);
     if (exposure_) run.follow(*exposure_, known_, is_known_shown_);
-    progress->begin("draft", 0);
-    auto read = read_scene(edited(as_read_->scene, now), *as_read_);
-    if (!read) return has_failed(read.error().message);
+    progress.begin("draft", 0);
+    LUXEL_TRY(auto read, read_scene(edited(as_read_->scene, *edit.now), *as_read_));
     Status begun;  // somebody waits for it
-    errands_.run([&] { begun = run.begin(*read, kQuickDraft, ends_); });
-    if (!begun) return has_failed(begun.error().message);
+    errands_.run([&] { begun = run.begin(read, kQuickDraft, ends_); });
+    LUXEL_TRY_STATUS(begun);
     is_known_shown_ = is_known_shown_ || run.follows();
     has_draft();
     {
       const std::scoped_lock lock(mutex_);
-      if (!edit_ && !is_ending_ && !is_resting_) progress->set_paused(is_paused_);
+      if (!is_resting_) progress.set_paused(is_paused_);
     }
     pipeline::BakeCache cache(of_edits_, pipeline::settings_of_kept_bake(of_edits_));
-    end(run,
-        pipeline::bake_read_scene((*read)->scene, of_edits_, *progress, {nullptr, &cache},
-                                  run.observer()),
-        cache);
+    return end(edit, run,
+               pipeline::bake_read_scene(read->scene, of_edits_, progress, {nullptr, &cache},
+                                         run.observer()),
+               cache, progress);
   }
-  std::shared_ptr<Progress> begin_edit(SceneNow& now) {
-    baked_.reset();
+  void begin_edit() {
     const std::scoped_lock lock(mutex_);
-    now = std::move(*edit_);
-    edit_.reset();
+    baked_ = {};
     is_drafted_ = ends_early_ = false;
-    progress_ = std::make_shared<Progress>();
-    return progress_;
   }
 
-  void end(BakeRun& run, Result<pipeline::Bake> baked, pipeline::BakeCache& cache) {
-    progress_->finish();
+  Status end(const Edit& edit, BakeRun& run, Result<pipeline::Bake> baked,
+             pipeline::BakeCache& cache, Progress& progress) {
+    progress.finish();
     exposure_ = run.exposure();
     learn(run);
-    if (!baked && comes_to_rest()) return;
-    if (!baked) return has_failed(baked.error().message);
-    cache.finish(*progress_);
+    if (!baked && comes_to_rest(edit)) return {};
+    if (!baked) return Failure{baked.error()};
+    cache.finish(progress);
     if (!cache.failure().empty()) baked->warnings.push_back(cache.failure());
-    baked_.emplace(std::move(*baked));
-    run.end(*baked_);
+    const auto whole = std::make_shared<const pipeline::Bake>(std::move(*baked));
+    run.end(*whole);
     exposure_ = run.exposure();
     // It may lie as a sum of kept layers does, of which nothing is known.
     if (!run.known()) is_known_shown_ = false;
     {
       const std::scoped_lock lock(mutex_);
-      if (!edit_) state_ = LiveState::baked;
+      baked_ = {whole, baking_.progress()};
+      if (edit.number == edits_) state_ = LiveState::baked;
     }
-    if (settings_.light == pipeline::LightPart::all) run.tell_lamps_apart(*progress_);
+    if (settings_.light == pipeline::LightPart::all) run.tell_lamps_apart(progress);
+    return {};
   }
-  /// Whether a bake that has not come to its end was to rest.
-  bool comes_to_rest() {
+  bool is_newest(const Edit& edit) const {
     const std::scoped_lock lock(mutex_);
-    if (ends_early_ && !edit_) state_ = LiveState::paused;
-    if (ends_early_) asks_to_save_ = false;  // there is nothing
+    return edit.number == edits_;
+  }
+  /// True: a bake that has not come to its end was to rest.
+  bool comes_to_rest(const Edit& edit) {
+    const std::scoped_lock lock(mutex_);
+    if (ends_early_ && edit.number == edits_) state_ = LiveState::paused;
     return ends_early_;
   }
   /// Light that is known in part is better than none. But where it follows an edit it is made of an
@@ -219,35 +215,12 @@ class Worker : public LiveBake {
     if (is_better) known_ = light;
     if (run.lies_anew()) is_known_shown_ = is_better;
   }
-  /// An edit that has come meanwhile is no failure.
-  void has_failed(std::string sentence) {
-    const std::scoped_lock lock(mutex_);
-    if (edit_) return;
-    asks_to_save_ = false;
-    news_.said = std::move(sentence);
-    state_ = LiveState::failed;
-  }
-  void write() {
-    LUXEL_CHECK(baked_.has_value());
-    const auto saving = std::make_shared<Progress>();
-    set_saving(saving);
-    const auto saved = pipeline::save_bake(settings_, *baked_, *progress_, *saving);
-    set_saving(nullptr);
-    const std::scoped_lock lock(mutex_);
-    asks_to_save_ = false;
-    news_.said = saved ? "wrote " + settings_.output.string() : saved.error().message;
-  }
-  void set_saving(std::shared_ptr<Progress> saving) {
-    const std::scoped_lock lock(mutex_);
-    saving_ = std::move(saving);
-    if (saving_ && is_ending_) saving_->request_cancel();
+  Status write(const Baked& baked, const Saver::Hand& hand, Progress& progress) const {
+    return pipeline::save_bake(settings_, *baked.bake, *baked.progress, progress)
+        .map([&](const nlohmann::json&) { hand({.said = "wrote " + settings_.output.string()}); });
   }
 
-  void hand(LiveNews news) {
-    const std::scoped_lock lock(mutex_);
-    add(std::move(news), news_);
-  }
-  /// Whether an element lies in the picture and shows its front.
+  /// True where an element lies in the picture and shows its front.
   bool is_seen(const light::TexelScene& in, size_t element) const {
     std::shared_ptr<const trace::CameraRays> eye;
     {
@@ -259,40 +232,31 @@ class Worker : public LiveBake {
 
   const pipeline::BakeSettings settings_;
   pipeline::BakeSettings of_edits_ = settings_;
-  const RunWatcher watcher_{
-      [this](LiveNews news) { hand(std::move(news)); },
-      [this](const light::TexelScene& in, size_t element) { return is_seen(in, element); }};
   Progress ends_;  ///< cancelled when the thread is to end
 
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  // Under the mutex:
-  LiveNews news_;
+  mutable std::mutex mutex_;                      ///< of what follows
   std::shared_ptr<const trace::CameraRays> eye_;  ///< null: nobody has looked yet
   LiveState state_ = LiveState::baking;
-  std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();  ///< of the last bake
-  std::shared_ptr<Progress> saving_;                                   ///< null: nothing is saved
-  std::optional<SceneNow> edit_;                                       ///< the next
-  bool is_read_ = false, asks_to_save_ = false, is_paused_ = false, is_busy_ = true,
-       is_ending_ = false;
+  Baked baked_;         ///< of the scene as it is now
+  uint64_t edits_ = 0;  ///< so many have been made
+  bool is_read_ = false, is_paused_ = false, is_resting_ = false;
   bool is_drafted_ = false;  ///< there is a draft of what is baked, or never will be
-  bool is_resting_ = false;
   bool ends_early_ = false;  ///< the bake was told to
 
-  // The thread's own.
+  // The bake's own.
   std::shared_ptr<const ReadScene> as_read_;
   std::optional<float> exposure_;  ///< of the light that was handed over last
   std::shared_ptr<const KnownLight> known_;
-  bool is_known_shown_ = false;          ///< what is shown is laid out as it is
-  std::optional<pipeline::Bake> baked_;  ///< of the scene as it is now
-  Errands errands_;                      ///< the priority of the window
-  std::thread thread_;                   ///< the last: it uses all of the others
+  bool is_known_shown_ = false;  ///< what is shown is laid out as it is
+  Errands errands_;              ///< the priority of the window
+  Saver saving_;
+  Baker baking_;  ///< the last: its thread uses all of the others
 };
 
 }  // namespace
 
 std::unique_ptr<LiveBake> LiveBake::begin(const pipeline::BakeSettings& settings) {
-  return std::make_unique<Worker>(settings);
+  return std::make_unique<LiveWorker>(settings);
 }
 
 }  // namespace luxel::view

@@ -2,7 +2,7 @@
 
 namespace luxel::view {
 
-void add(LiveNews newer, LiveNews& news) {
+void merge(LiveNews newer, LiveNews& news) {
   const bool is_other = newer.read || newer.lit;
   if (newer.read) news.read = std::move(newer.read);
   if (newer.said) news.said = std::move(newer.said);

@@ -47,23 +47,23 @@ struct LiveLight {
 
 /// What has come since it was last asked for.
 struct LiveNews {
-  std::shared_ptr<const ReadScene> read;  ///< of the file, and after each edit
+  std::shared_ptr<const ReadScene> read{};  ///< of the file, and after each edit
   /// With the first light: of a draft, and then of the bake itself, which lies elsewhere.
-  std::optional<LitScene> lit;
-  std::optional<LiveLight> light;  ///< the newest
+  std::optional<LitScene> lit{};
+  std::optional<LiveLight> light{};  ///< the newest
   /// With `lit`, where something else was shown before: its light where `lit` has its own.
-  std::optional<LiveLight> before;
+  std::optional<LiveLight> before{};
   /// The last light of a bake, but for what comes straight from lamps: is shown as soon as
   /// something is edited, with lamps drawn besides. It comes after that light.
-  std::vector<image::HalfImage> without_lamps;
+  std::vector<image::HalfImage> without_lamps{};
   /// The newest light reflection by reflection, as far as it is known; laid out as it is.
-  std::shared_ptr<const BouncedLight> bounced;
-  std::shared_ptr<const ProbeBalls> probes;  ///< of a bake with --probes, with the last light
-  std::vector<std::string> warnings;         ///< pipeline::Bake::warnings, with the last light
-  std::optional<std::string> said;           ///< of saving, or why there is no light; a sentence
+  std::shared_ptr<const BouncedLight> bounced{};
+  std::shared_ptr<const ProbeBalls> probes{};  ///< of a bake with --probes, with the last light
+  std::vector<std::string> warnings{};         ///< pipeline::Bake::warnings, with the last light
+  std::optional<std::string> said{};           ///< of saving, or why there is no light; a sentence
 };
 
 /// What is newer takes the place of what is older.
-void add(LiveNews newer, LiveNews& news);
+void merge(LiveNews newer, LiveNews& news);
 
 }  // namespace luxel::view

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "luxel/base/worker.h"
 #include "luxel/pipeline/command/relight_error.h"
 #include "luxel/view/relight/open_lxr.h"
 
@@ -17,21 +18,27 @@ struct LampCheckParams {
   uint64_t seed = 1;
 };
 
-/// Guards a thread. Its functions are called by one thread and do not wait for it, but for the
-/// destructor, which ends it within about 0.2 s, and wait().
-class LampCheck {
- public:
-  /// Asks about the light of these lamps, which opened.light has afterwards.
-  static std::unique_ptr<LampCheck> begin(OpenedLxr& opened, const Lamps& now,
-                                          const LampCheckParams& params);
-  virtual ~LampCheck() = default;
-
-  /// The share that is done.
-  virtual float share() const = 0;
-  /// None: it is still asked. Errors: there is no memory.
-  virtual std::optional<Result<pipeline::IndirectError>> result() const = 0;
-  virtual void wait() = 0;
+/// Texels, and the light that they have.
+struct CheckedTexels {
+  std::vector<Vec3> position, normal, geometric_normal;
+  std::vector<Rgb> indirect;
 };
+
+/// Light that is to be compared.
+struct LampsToCheck {
+  std::shared_ptr<const ReadScene> read;
+  CheckedTexels texels;
+  int bounces = -1;
+  Lamps baked, now;
+  LampCheckParams params;
+};
+/// The light of these lamps, which opened.light has afterwards.
+LampsToCheck lamps_to_check(OpenedLxr& opened, const Lamps& now, const LampCheckParams& params);
+/// Errors: cancelled.
+Result<pipeline::IndirectError> check_lamps(const LampsToCheck& asked, Progress& progress);
+
+using LampCheck = Worker<LampsToCheck, pipeline::IndirectError>;
+std::unique_ptr<LampCheck> begin_lamp_check();
 
 /// What is to be told of it: what was compared, and how far it is off.
 std::string sentence_of(const pipeline::IndirectError& error, const LampCheckParams& params);

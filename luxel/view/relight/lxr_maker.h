@@ -2,11 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "luxel/base/progress.h"
+#include "luxel/base/worker.h"
 #include "luxel/view/edit/edits.h"
 #include "luxel/view/relight/kept_lxr.h"
 #include "luxel/view/relight/open_lxr.h"
@@ -28,18 +27,11 @@ struct MadeLxr {
   bool was_there = false;
 };
 
-/// Guards a thread. Its functions are called by one thread and do not wait for it, but for the
-/// destructor, which ends it within some tenths of a second and leaves nothing half made, and
-/// wait().
-class LxrMaker {
- public:
-  static std::unique_ptr<LxrMaker> begin(LxrToMake to_make);
-  virtual ~LxrMaker() = default;
+/// Where it is cancelled, it leaves nothing half made. Errors: those of pipeline::relight() and of
+/// files, cancelled.
+Result<MadeLxr> make_lxr(const LxrToMake& to_make, Progress& progress);
 
-  virtual Progress::Snapshot snapshot() const = 0;
-  /// Once, when it has ended. Errors: those of pipeline::relight() and of files.
-  virtual std::optional<Result<MadeLxr>> take() = 0;
-  virtual void wait() = 0;
-};
+using LxrMaker = Worker<LxrToMake, MadeLxr>;
+std::unique_ptr<LxrMaker> begin_lxr_maker();
 
 }  // namespace luxel::view

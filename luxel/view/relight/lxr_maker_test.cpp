@@ -40,11 +40,8 @@ class LxrMakerTest : public ::testing::Test {
   }
 
   Result<MadeLxr> made() const {
-    const auto maker = LxrMaker::begin(to_make_);
-    maker->wait();
-    auto out = maker->take();
-    EXPECT_TRUE(out);
-    return std::move(*out);
+    Progress progress;
+    return make_lxr(to_make_, progress);
   }
   bool is_made_anew() const {
     const auto out = made();
@@ -107,7 +104,8 @@ TEST_F(LxrMakerTest, StopsSoonAndLeavesNothing) {
   to_make_.settings.matrix.patches.count = 32768;
   to_make_.settings.matrix.factors.rays_per_patch = 65535;
   for (const int milliseconds : {0, 20, 300}) {
-    auto maker = LxrMaker::begin(to_make_);
+    auto maker = begin_lxr_maker();
+    maker->ask(to_make_);
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     // Seconds of processors: the thread stands back behind all others of the machine. The bound is
     // what no slow machine comes near, and the work that is not stopped exceeds.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "luxel/import/test_files.h"
+#include "luxel/import/import_test_support.h"
 
 namespace luxel::import {
 

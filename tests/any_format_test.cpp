@@ -59,7 +59,7 @@ refs 4
 kids 0
 )";
 
-// What a file names is opened as anywhere else, and warnings arrive.
+// Files that a scene names are opened as anywhere else, and warnings arrive.
 TEST(AnyFormat, PicturesAndWarningsComeAlong) {
   const ScratchFolder s;
   std::filesystem::create_directory(s.path / "in");
@@ -120,7 +120,7 @@ TEST(AnyFormat, AReaderThatTakesTooMuchMemoryIsASentence) {
   EXPECT_FALSE(std::filesystem::exists(s.path / "out"));
 }
 
-// What the other process hands over is the scene as this one would read it.
+// The other process hands over the scene as this one would read it.
 TEST(AnyFormat, NothingIsLostBetweenTheProcesses) {
   const ScratchFolder s;
   std::filesystem::copy(std::filesystem::path(LUXEL_SOURCE_DIR) / "tests/fuzz/corpus/png/small.png",

@@ -54,7 +54,7 @@ TEST(BadFiles, AreRefusedWithASentence) {
   expect_refused(s.write("head.glb", whole.substr(0, 9)).string(), 1, "head.glb");
 }
 
-/// What stands before a command that root's rights must not help. As root, runs it as nobody.
+/// Words before a command that root's rights must not help. As root, runs it as nobody.
 std::string without_rights() {
   return ::geteuid() == 0 ? "setpriv --reuid 65534 --clear-groups" : "";
 }
@@ -247,7 +247,7 @@ TEST(BadSettings, NameTheOptionAndTheValue) {
     expect_refused(box + " " + option, 1, words);
 }
 
-/// What stands behind "that works is " in an error.
+/// The words behind "that works is " in an error.
 std::string advice(const std::string& options) {
   const ScratchFolder s;
   const CommandResult r = luxel("bake " + options + " -o " + (s.path / "baked").string());

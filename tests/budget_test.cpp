@@ -120,7 +120,7 @@ TEST(SlowPlanCommand, KnowsTheRaysAndTheMemory) {
   EXPECT_NEAR(double(plan["memory_bytes"]) / double(done["peak_memory_bytes"]), 1, 0.25);
 }
 
-// What an error takes is promised as well: the rounds are made for some texels only.
+// The plan predicts the rays to an error, too: it makes the rounds for some texels only.
 TEST(SlowPlanCommand, KnowsTheRaysToAnError) {
   const ScratchFolder s;
   const std::string bake = "bake " + scene_file("cornell-box.glb") +

@@ -242,7 +242,7 @@ TEST(Compare, AnExposureHasNoMeaningForDisplayValues) {
   EXPECT_EQ(r.out, "");
 }
 
-// What has no alpha is covered everywhere; of a picture with holes the rest is compared.
+// A picture without alpha is covered everywhere; of a picture with holes the rest is compared.
 TEST(Compare, GreyAndRgbPicturesCoverEverything) {
   const ScratchFolder s;
   const auto file = [&](const std::string& name, int channels, uint8_t alpha) {

@@ -8,17 +8,17 @@
 
 namespace luxel::test {
 
-/// What rug and picture are made of.
+/// Construction of the rug and the picture.
 enum class Thin : uint8_t { sheet, double_sided_sheet, box };
 
 /// A closed room of 4 x 4 x 2.8 m with a lamp at its ceiling. Near the floor floats a rug, near the
 /// wall at x = -2 a picture, and a table with a top of 2 cm stands on the floor.
 struct ContactRoom {
   scene::Scene scene;
-  /// Whether light hardly comes to a place: on the floor under the rug or on the rug's underside,
-  /// on the wall behind the picture or on its back, `inside_m` or more from the border.
+  /// True where light hardly comes: on the floor under the rug or on the rug's underside, on the
+  /// wall behind the picture or on its back, `inside_m` or more from the border.
   bool is_covered(Vec3 p, Vec3 normal, float inside_m) const;
-  /// Whether a place is in the open and within `reach_m` of the rug, the picture or the table's
+  /// True for a place in the open within `reach_m` of the rug or the picture, or on the table's
   /// top.
   bool is_near(Vec3 p, Vec3 normal, float reach_m) const;
 
@@ -32,7 +32,7 @@ struct ContactRoom {
 
 namespace contact_room {
 
-/// How far (a, b) lies inside of a rectangle, negative outside [m].
+/// Depth of (a, b) inside of a rectangle, negative outside [m].
 inline float inside_by(const std::array<float, 4>& r, float a, float b) {
   return std::min(std::min(a - r[0], r[1] - a), std::min(b - r[2], r[3] - b));
 }

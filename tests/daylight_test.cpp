@@ -25,7 +25,7 @@ std::string room(int faces) {
   return text;
 }
 
-/// What a command leaves in a file, and what it says.
+/// A command's messages, and the bytes of a file that it leaves.
 struct Left {
   std::string said, bytes;
 };

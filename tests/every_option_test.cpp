@@ -72,7 +72,7 @@ std::vector<std::string> given_with(const std::string& flag, const std::string& 
   return {flag};
 }
 
-/// What an option is given: for a command alone ("probe --samples"), or for all.
+/// Values of options: for a command alone ("probe --samples"), or for all.
 Options values_of(const Inputs& in) {
   return {
       {"--ambient-occlusion", "0.5"},
@@ -182,7 +182,7 @@ Options values_of(const Inputs& in) {
   };
 }
 
-/// What a code other than 0 may say.
+/// Words that may explain an exit code other than 0.
 const std::vector<std::string> kReasons{
     "does not use",             // an option of another solver or technique
     "has no meaning with",      // the same, in luxel factors

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// What is held, but hardly.
+/// A scene that is held, but hardly.
 struct Extreme {
   std::string name;
   scene::Scene scene;

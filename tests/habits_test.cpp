@@ -1,5 +1,5 @@
-// What people and scripts expect of any command line: near misses, exit codes, events, colours,
-// options from a file, and a command that says how things stand.
+// Things that people and scripts expect of any command line: near misses, exit codes, events,
+// colours, options from a file, and a command that says how things stand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -137,7 +137,7 @@ TEST(Events, AreErrorsAndWarnings) {
   EXPECT_FALSE(warnings.empty());
 }
 
-/// What a command prints on a terminal.
+/// Output of a command on a terminal.
 std::string on_a_terminal(const std::string& environment, const std::string& arguments) {
   return shell("script -qec 'env -u NO_COLOR " + environment + " " LUXEL_BINARY " " + arguments +
                "' /dev/null")
@@ -196,7 +196,7 @@ denoise = true
   EXPECT_EQ(given["background"], nlohmann::json({0.1, 0.2, 0.3}));
   EXPECT_EQ(given["stitch"], false);
   EXPECT_EQ(given["denoise"], true);
-  // What contradicts an option of the command line gives way, too.
+  // A setting that contradicts an option of the command line gives way, too.
   const CommandResult sky = bake("--samples 3 --sky 135,40");
   ASSERT_EQ(sky.code, 0) << sky.err;
   EXPECT_FALSE(settings().contains("background") && !settings()["background"].is_null());
@@ -304,7 +304,7 @@ TEST_F(OptionFiles, NameFilesFromTheirOwnFolderOn) {
   std::filesystem::create_symlink(s.path / "above.hdr", folder / "link.hdr");
   write("[bake]\nresolution = 16\nsamples = 1\nenvironment = \"link.hdr\"\n");
   EXPECT_THAT(bake("").err, HasSubstr("link.hdr lies outside this file's folder"));
-  // What is checked is what is read: "link.hdr" here, whatever else is there.
+  // The file that is checked is the one that is read: "link.hdr" here, whatever else is there.
   s.write("scenes/link.hdr,30", map);
   write("[bake]\nresolution = 16\nsamples = 1\nenvironment = \"link.hdr,30\"\n");
   EXPECT_THAT(bake("").err, HasSubstr("link.hdr lies outside this file's folder"));

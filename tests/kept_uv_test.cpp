@@ -74,7 +74,7 @@ Sides light_of(const pipeline::Bake& bake, const scene::Scene& scene, uint32_t i
   return {difference / truth, shown / truth};
 }
 
-// What is seen of the arches is what the file calls their backs. Before, they were black.
+// The file calls the visible sides of the arches their backs. Before, they were black.
 TEST(KeptUv, ArchesWhoseFrontsLieInTheStoneAreUnwrapped) {
   const scene::Scene scene = courtyard();
   const pipeline::Bake b = bake(scene, settings_at(256));
@@ -91,7 +91,7 @@ TEST(KeptUv, ArchesWhoseFrontsLieInTheStoneAreUnwrapped) {
   }
 }
 
-// What the test above guards against, and what --uv keep still gives.
+// The wrong light that the test above guards against. --uv keep still gives it.
 TEST(KeptUv, KeepShowsTheLightOfTheOtherSide) {
   const scene::Scene scene = courtyard();
   const pipeline::Bake b = bake(scene, settings_at(256, atlas::UvMode::keep));

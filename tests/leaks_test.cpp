@@ -179,7 +179,7 @@ TEST(Leaks, HierarchicalRadiosityKeepsASealedRoomBlack) {
   EXPECT_LT(light.brightest, own.mesh.point.tolerance);
 }
 
-/// What has no thin walls keeps its triangles.
+/// Scenes without thin walls keep their triangles.
 TEST(Leaks, OtherScenesStayWhole) {
   for (const char* name : {"cornell-box.glb", "spheres-and-cube.glb", "radiosity-box.glb"}) {
     Progress progress;

@@ -146,7 +146,7 @@ TEST(Lux, IsNearTheLumenMethod) {
   EXPECT_NEAR(floor["mean"], 553, 0.03 * 553);
   EXPECT_LT(double(floor["standard_error_of_mean"]), 0.001 * 553);
   EXPECT_NEAR(double(floor["uniformity"]), double(floor["minimum"]) / double(floor["mean"]), 1e-9);
-  // What the file has is what the summary says.
+  // The summary agrees with the file.
   const std::vector<PlaneRow> rows = rows_of(s.path / "p.csv");
   double sum = 0, least = INFINITY;
   for (const PlaneRow& row : rows) sum += row.e, least = std::min(least, row.e);
@@ -212,7 +212,7 @@ std::string two_storeys() {
   return text + obj_box("cupboard", {6, 0, 0}, {7, 1.5f, 1}, false, n);
 }
 
-// What a work plane is laid over: floors, not tables; rooms, parted at doors; nothing in solids.
+// Work planes lie over floors, not tables; rooms are parted at doors; no plane lies in solids.
 TEST(Lux, FindsFloorsAndRooms) {
   const ScratchFolder s;
   const std::string scene = s.write("house.obj", two_storeys()).string();
@@ -284,7 +284,7 @@ TEST(Probe, ThreeMethodsAgree) {
   // A bake of 64 texels is good to a percent or two.
   EXPECT_NEAR(from["illuminance"], e, 0.02 * e);
   EXPECT_EQ(paths["unit"], "lux");
-  // What sources bring adds up to E: all light comes from surfaces.
+  // Light of the sources adds up to E: all light comes from surfaces.
   double sum = 0, factors = 0;
   for (const nlohmann::json& source : paths["sources"])
     sum += double(source["irradiance"][1]), factors += double(source["form_factor"]);

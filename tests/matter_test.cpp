@@ -24,7 +24,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// What a bake left, read back.
+/// Results of a bake, read back.
 struct Baked {
   scene::Scene scene;
   image::Image lightmap;

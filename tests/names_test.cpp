@@ -106,7 +106,7 @@ TEST(Names, MoveNoCursorAndForgeNoLine) {
     EXPECT_THAT(error.err, HasSubstr("done\\")) << option;
     expect_harmless(error.out + error.err);
   }
-  // What the user gives, too, and what a library says of it.
+  // The user's own words are harmless, too, and so is a library's message about them.
   for (const std::string command : {"info ", "", "render a -o b --size "}) {
     const CommandResult usage = luxel(command + "'" + kForged + "'");
     EXPECT_NE(usage.code, 0);

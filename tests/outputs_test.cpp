@@ -1,4 +1,4 @@
-// What a bake leaves: complete, the same bits every time, and readable again.
+// Outputs of a bake: complete, the same bits every time, and readable again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -335,7 +335,7 @@ TEST(BakeOutputs, LightIsAttachedInOneWay) {
   EXPECT_EQ(files_in(s.path), std::set<std::string>{});
 }
 
-// What is baked is diffuse: highlights of the local techniques stay out of it.
+// Baked light is diffuse: highlights of the local techniques stay out of it.
 TEST(BakedGlb, HasNoHighlights) {
   const ScratchFolder s;
   ASSERT_THAT(slurp(scene_file("spheres-and-cube.glb")), HasSubstr("KHR_materials_specular"));
@@ -468,7 +468,7 @@ TEST(SameBitsSlow, WithHitsOnTheDisk) {
   EXPECT_EQ(files_in(s.path), (std::set<std::string>{"memory", "disk"}));
 }
 
-// What is there per texel outweighs the rest of the process by far here.
+// Memory per texel outweighs the rest of the process by far here.
 TEST(MaxMemorySlow, TheLeastThatWorksIsKept) {
   const std::string scene = scene_file("cornell-box.glb");
   for (const char* more : {"", "--denoise ", "--keep "}) {

@@ -12,7 +12,7 @@ namespace {
 
 class PageShaders : public gpu::testing::OnDevice {
  protected:
-  /// What docs/method/directional.md's shader makes of a bake's lightmap for a bent normal.
+  /// Light of a bake's lightmap for a bent normal, by the shader in docs/method/directional.md.
   std::vector<Rgb> sh1(const pipeline::Bake& bake, Vec3 m, Vec3 n) {
     const std::array<const image::Image*, 4> maps{
         &bake.lightmaps.front(), &bake.directions.pictures[0].front(),

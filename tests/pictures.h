@@ -40,7 +40,7 @@ inline image::Image png_at(const std::filesystem::path& file) {
   return linear;
 }
 
-/// What a bake has left in a folder.
+/// The lightmap that a bake has left in a folder.
 inline image::Image lightmap_of(const std::filesystem::path& folder) {
   return exr_at(folder / "lightmap.exr");
 }

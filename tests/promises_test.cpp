@@ -1,5 +1,5 @@
-// What every command owes its user before and after the work: where results go is tried out first,
-// senseless numbers are refused, and results that nobody got are an error.
+// Promises of every command to its user, before and after the work: output files are tried out
+// first, senseless numbers are refused, and results that nobody got are an error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

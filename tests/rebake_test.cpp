@@ -119,7 +119,7 @@ RebakeDifference difference_rebake(const fs::path& folder, const fs::path& truth
   return {std::sqrt(sum2 / count) / mean, largest / mean};
 }
 
-/// What an edit does, and how many of a bake's rays it may cost.
+/// An edit, and the share of a bake's rays that it may cost.
 struct Case {
   const char* name;
   Edit edit;
@@ -300,7 +300,7 @@ TEST_F(Rebake, AnotherMeshIsBakedFromScratchAndKept) {
   EXPECT_EQ(bake(edit, kept_, "--keep")["cache"]["changed"], "");
 }
 
-// Whether what stands behind it gets light decides which surfaces have two sides.
+// Light behind double-sided surfaces decides which of them have two sides; opaque glass stops it.
 TEST_F(Rebake, DoubleSidedGlassMadeOpaqueIsBakedFromScratch) {
   const auto two_sided = [](scene::Scene& s) { s.materials[kGlass].double_sided = true; };
   ASSERT_TRUE(bake(two_sided, kept_, "--keep")["cache"]["kept"]);

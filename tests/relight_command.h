@@ -1,4 +1,4 @@
-// What the tests of `luxel relight` share: small files, and looking at what they play.
+// Shared by the tests of `luxel relight`: small files, and looking at what they play.
 #pragma once
 
 #include "luxel/base/file.h"

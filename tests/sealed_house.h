@@ -37,8 +37,8 @@ inline Vec3 in_house(const SealedHouse& house, Vec3 p) {
   return {c * p.x - s * p.z, p.y, s * p.x + c * p.z};
 }
 
-/// What stands in the room and is solid, in axes of its own: x and z of the box's directions, its
-/// origin, and its corners.
+/// A solid in the room, in axes of its own: x and z of the box's directions, its origin, and its
+/// corners.
 struct SolidBox {
   Vec2 x, z, at;
   Vec3 lower, upper;
@@ -60,8 +60,8 @@ inline constexpr SolidBox kTerrace{
     kScreen{kAskewX, kAskewZ, kAskewAt, {-0.6f, kSunk, 0.6f}, {0.1f, 1.4f, 0.61f}},
     kShell{{1, 0}, {0, 1}, {0, 0}, {-0.9f, -0.01f, -0.8f}, {-0.2f, 0.6f, -0.2f}};
 
-/// Whether a place of the world is in the sealed room, a tenth of a millimetre from its walls, and
-/// not inside of a solid.
+/// True for a place of the world in the sealed room, a tenth of a millimetre or more from its
+/// walls, and not inside of a solid.
 inline bool is_in_sealed_room(const SealedHouse& house, Vec3 world) {
   const Vec3 p = in_house(house, world);
   if (p.y < 1e-4f || p.y > kRoomHeight - 1e-4f) return false;

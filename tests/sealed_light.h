@@ -16,7 +16,7 @@ struct SealedLight {
   double brightest = 0;                 ///< texel inside, over that mean
 };
 
-/// Whether a surface faces into the sealed room there.
+/// True where a surface faces into the sealed room.
 inline bool is_inside(const SealedHouse& house, const scene::Scene& scene,
                       const scene::SurfacePoint& p) {
   const Vec3 front = scene::front_normal(scene, p.instance, p.triangle);

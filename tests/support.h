@@ -1,4 +1,4 @@
-// What tests share: where the shared data lies, and reading it.
+// The folder of shared data, and skipping tests where it is not there.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What tests ask of the surfaces of a scene.
+// Queries of tests about the surfaces of a scene.
 #pragma once
 
 #include <gtest/gtest.h>

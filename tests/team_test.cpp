@@ -38,7 +38,7 @@ class BakesOfATeam : public ::testing::Test {
   std::string bake(const std::string& more) const {
     return "bake " + more + " -o " + folder_.string();
   }
-  /// What so many processes make, all of which work.
+  /// Bakes with so many processes, all of which work.
   CommandResult together(int processes, const std::string& more) const {
     return luxel(bake(more) + fmt::format(" --processes-per-node {}", processes),
                  mpirun(processes));

@@ -16,7 +16,7 @@ inline const std::string kInWindow =
     "/tools/on_virtual_display.sh";
 inline bool has_virtual_display() { return shell("command -v Xvfb").code == 0; }
 
-/// Whether this machine has a device that luxel can use.
+/// True: this machine has a device that luxel can use.
 inline bool has_device(const ScratchFolder& s) {
   const CommandResult r = view((s.path / "absent").string() + " --offscreen --screenshot " +
                                (s.path / "x.png").string());

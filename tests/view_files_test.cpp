@@ -120,7 +120,7 @@ TEST_F(ViewFiles, TurnAround) {
       0.01);
 }
 
-// What cannot be opened changes nothing.
+// A file that cannot be opened changes nothing.
 TEST_F(ViewFiles, OpenInAWindow) {
   if (!has_virtual_display()) GTEST_SKIP() << "needs Xvfb (package xvfb)";
   const std::string a = baked("a", "cornell-box.glb", kFewTexels);

@@ -1,4 +1,4 @@
-// What a browser draws from a bake, held against preview.png: Chromium and WebGL share no line with
+// A browser's pictures of a bake, held against preview.png: Chromium and WebGL share no line with
 // luxel/display/draw.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ bool has_command(const char* name) {
   return std::system((std::string("command -v ") + name + " >/dev/null 2>&1").c_str()) == 0;
 }
 
-/// What is missing for drawing pages; empty: nothing.
+/// A sentence on what is missing for drawing pages; empty: nothing.
 std::string missing_browser() {
   if (!has_command("node")) return "node is not installed";
   if (!has_command("${CHROMIUM:-chromium}")) return "chromium is not installed";
@@ -71,7 +71,7 @@ std::vector<Shot> shoot(const std::vector<Page>& pages, const std::string& optio
   return shots;
 }
 
-/// How far two pictures of 4 channels differ, alpha aside, over the pixels that `counts` accepts.
+/// Differences of two pictures of 4 channels, alpha aside, over the pixels that `counts` accepts.
 struct Difference {
   double mean = 0, bias = 0;  ///< of the channels' differences, in 255ths; bias with its sign
   double share_beyond = 0;    ///< of pixels with a channel more than `step` away
@@ -373,7 +373,7 @@ TEST_F(ViewHtml, FacesSeenEdgeOnHaveTheirOwnLight) {
     scene::add_quad(block, {foot[k], foot[next], top[next], top[k]}, white);
   }
   scene::place(scene, std::move(block));
-  // What lies under the floor is dark and fills most of the atlas.
+  // Rectangles under the floor are dark and fill most of the atlas.
   for (const float y : {-0.5f, -1.0f, -1.5f, -2.0f, -2.5f})
     scene::add_rectangle(scene, {-3, 3, -3, 3}, y, true, white);
   scene.lights.emplace_back();

@@ -71,7 +71,7 @@ TEST_F(ViewOfLamps, IsWhatAPlayMakesOfThem) {
   EXPECT_EQ(shown(R"({"at": 0, "new_lamp": "point", "on": false}, {"at": 0, "key": "m"})"), first);
 }
 
-// What is saved is drawn by `luxel relight`, by rays and with its own look-up of texels.
+// `luxel relight` draws the saved script by rays and with its own look-up of texels.
 TEST_F(ViewOfLamps, SavesAScriptThatRelightDraws) {
   const CommandResult saved =
       view_lamps(lxr_ + offscreen("window.png") +

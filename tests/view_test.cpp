@@ -257,7 +257,7 @@ TEST(View, ASceneIsBakedWhileItIsLookedAt) {
   EXPECT_EQ(slurp(s.path / "window.png"), slurp(s.path / "without.png"));
   for (const char* file : {"lightmap.exr", "baked.glb", "preview.png"})
     EXPECT_EQ(slurp(s.path / "saved" / file), slurp(s.path / "baked" / file)) << file;
-  // What has light never jumps; before that come the empty window and colours alone.
+  // Light never jumps once it is there; before it come the empty window and colours alone.
   const std::vector<double> brightness = column_of(s.path / "frames.csv", 2);
   const std::vector<double> has_light = column_of(s.path / "frames.csv", 4);
   ASSERT_GT(std::ranges::count(has_light, 1.0), 30) << "a second to fade in";

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What asset.extras.luxel.attached says.
+/// Values of asset.extras.luxel.attached.
 constexpr const char *kCombined = "combined", *kEmissive = "emissive";
 
 /// linear(picture) * intensity = E, up to 8 bits and clipping.
@@ -43,7 +43,7 @@ scene::PunctualLight as_even_light(const scene::Scene& scene, scene::PunctualLig
   return light;
 }
 
-/// What glTF has no word for.
+/// Holds the properties that glTF has no word for.
 json& luxel_extras(json& object) { return object_in(object, {"extras", "luxel"}); }
 
 void append_lights_and_cameras(Glb& glb, const scene::Scene& scene, json& roots) {

@@ -45,7 +45,7 @@ inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
   return baked_glb(scene, atlas, std::span(&lightmap, 1));
 }
 
-/// What surfaces send to the eye, as pictures for viewers that know no lightmap.
+/// Light that surfaces send to the eye, as pictures for viewers that know no lightmap.
 struct LitPictures {
   Attach attach = Attach::combined;  ///< or emissive
   std::vector<image::Image8> pages;  ///< sRGB, per page; combined: the fourth channel is alpha
@@ -57,19 +57,19 @@ struct LitPictures {
 /// As baked_glb(), with materials that show `pictures` by their TEXCOORD_1, however they are lit:
 /// combined as the base colour of KHR_materials_unlit, emissive as emission of black surfaces.
 /// Vertex colours, normal maps and base colour textures are left out, since the pictures hold them.
-/// What stays in both are alpha modes, sides, and materials that the scene has unlit.
+/// Alpha modes, sides and materials that the scene has unlit stay in both.
 Result<std::vector<std::byte>> lit_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
                                        const LitPictures& pictures);
 
-/// What the files of a page are called, up to their extension: "lightmap", or of several pages
-/// "lightmap-0", "lightmap-1", ... Those of a layer: "lightmap-LAYER", "lightmap-LAYER-0", ...
+/// Name of a page's files, up to their extension: "lightmap", or of several pages "lightmap-0",
+/// "lightmap-1", ... Those of a layer: "lightmap-LAYER", "lightmap-LAYER-0", ...
 std::string lightmap_name(size_t page, size_t pages, std::string_view layer = {});
 
 /// The lightmaps that a file of baked_glb() names: per material the file with its light,
 /// "lightmap.exr"; "" where it names none. Error (bad_input): no .glb.
 Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
                                                    const std::string& name);
-/// How such a file shows its light. Error (bad_input): no .glb.
+/// The way in which such a file shows its light. Error (bad_input): no .glb.
 Result<Attach> attach_of(std::span<const std::byte> glb, const std::string& name);
 
 /// A scene whose meshes carry light per vertex: `colors` is E / `intensity`, times the vertex

@@ -321,7 +321,7 @@ std::map<std::string, json> materials_of(const Document& d) {
   return out;
 }
 
-// What a viewer needs that knows the core of glTF: colour by TEXCOORD_1, alpha, sides.
+// A viewer that knows only the core of glTF needs colour by TEXCOORD_1, alpha and sides.
 TEST(LitGlb, CombinedIsUnlitColor) {
   const Document d = lit_document(Attach::combined);
   std::map<std::string, json> materials = materials_of(d);

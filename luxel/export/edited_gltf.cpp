@@ -74,7 +74,7 @@ Result<std::vector<std::byte>> put_together(const GltfFile& file, const std::str
   return out;
 }
 
-/// What data URIs say of pictures by their names.
+/// MIME type of a picture's data URI, by the ending of the picture's name.
 std::string type_of(const std::string& uri) {
   const auto ends = [&](const char* with) {
     const std::string_view end(with);
@@ -112,7 +112,7 @@ void use_extension(OrderedJson& document, const char* name) {
 
 // Materials.
 
-/// Whether its colour is that of KHR_materials_pbrSpecularGlossiness.
+/// True where the colour is that of KHR_materials_pbrSpecularGlossiness.
 bool is_glossy(const OrderedJson& material) {
   return material.contains("extensions") && material["extensions"].contains(kGlossiness) &&
          !material["extensions"].contains("KHR_materials_unlit");

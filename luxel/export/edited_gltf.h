@@ -12,8 +12,8 @@
 
 namespace luxel::export_ {
 
-/// What of a file's scene is otherwise. Instances, lights and materials are those that the file was
-/// read as, by their numbers.
+/// Changes to a file's scene. Instances, lights and materials have the numbers with which the file
+/// was read.
 struct GltfEdits {
   std::vector<uint32_t> node_of_instance, node_of_light;  ///< import::Imported has them
   struct Placed {

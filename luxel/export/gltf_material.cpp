@@ -213,7 +213,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   set_alpha(m, out);
   if (m.double_sided) out["doubleSided"] = true;
   if (m.unlit) set_unlit(glb, out);
-  // What is baked is diffuse, and what is unlit has no highlight.
+  // Baked light is diffuse, and unlit materials have no highlight.
   if (book.lightmap.empty() && !m.unlit) set_highlight(glb, m, out);
   if (book.lightmap.empty() || m.unlit) return out;
   object_in(out, {"extras", "luxel"})["lightmap"] = book.lightmap[place.page].name + ".exr";

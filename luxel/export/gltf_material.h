@@ -22,13 +22,14 @@ struct MaterialPlace {
   bool attached = true;  ///< false: on what shows no lightmap, though it has a place there
 };
 
-/// What is already in the document: materials, textures and samplers are written when first used.
+/// Parts that the document has already: materials, textures and samplers are written when first
+/// used.
 struct MaterialBook {
   std::map<std::tuple<uint32_t, TexcoordSlots, uint32_t, bool>, size_t> materials;
   std::map<uint32_t, size_t> images;
   std::map<std::array<int, 4>, size_t> samplers;     ///< wrap u, wrap v, magnify, minify
   std::map<std::array<size_t, 2>, size_t> textures;  ///< image, sampler
-  /// What every material says of the light, for each page of the lightmap; empty: there is none.
+  /// The lightmap that materials refer to, page by page; empty: there is none.
   struct LightmapPage {
     nlohmann::json picture;  ///< MOZ_lightmap itself, else the textureInfo of what is attached
     std::string name;        ///< of the files, without what follows the first dot
@@ -47,8 +48,8 @@ inline const scene::Material& shown_material(const MaterialBook& book, const sce
   return book.shown.empty() || !place.attached ? scene.materials[material] : book.shown[material];
 }
 
-/// Whether the book's pictures hold the colour of a material's surfaces: vertex colours are in
-/// them.
+/// True where the book's pictures hold the colour of a material's surfaces, vertex colours
+/// included.
 inline bool is_in_pictures(const MaterialBook& book, const scene::Material& material,
                            MaterialPlace place) {
   return place.attached && !book.lightmap.empty() && book.attach != Attach::lightmap &&

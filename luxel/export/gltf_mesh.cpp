@@ -18,7 +18,7 @@ bool needs_uv_set(const scene::Material& m, int set) {
   return false;
 }
 
-/// What a primitive does with its texture coordinates.
+/// Use of a primitive's texture coordinates.
 struct Texcoords {
   bool lightmapped = false;  ///< TEXCOORD_1 holds the lightmap's
   bool keeps_first = true;   ///< false: the scene's first set only where a texture needs it
@@ -73,7 +73,7 @@ void append_colors(Glb& glb, const scene::Mesh& mesh, const scene::Material& mat
   attributes["COLOR_0"] = append_accessor(glb, std::span<const std::array<float, 4>>(with_alphas));
 }
 
-/// What the triangles of a primitive have in common.
+/// Properties that the triangles of a primitive have in common.
 struct Part {
   uint32_t material = 0, page = 0;
   bool attached = true;
@@ -114,7 +114,7 @@ json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const sc
           {"material", material_index(glb, book, scene, part.material, slots, place)}};
 }
 
-/// Whether a normal map lies on a mesh that has no normals.
+/// A normal map lies on a mesh that has no normals.
 bool needs_flat_normals(const MaterialBook& book, const scene::Scene& scene,
                         const scene::Mesh& mesh, const LightmapCoordinates& lightmap) {
   if (lightmap.uv.empty() || !mesh.normals.empty()) return false;

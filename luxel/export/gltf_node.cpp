@@ -20,9 +20,9 @@ Eigen::Matrix3d linear_part(const Mat34& m) {
   return out;
 }
 
-/// Whether translation * rotation * scale gives the matrix back, as the Khronos validator asks: it
-/// allows an absolute error of 5e-5 in any entry, which a matrix of large scale misses by rounding
-/// alone.
+/// True where translation * rotation * scale gives the matrix back, as the Khronos validator asks.
+/// It allows an absolute error of 5e-5 in any entry, which a matrix of large scale misses by
+/// rounding alone.
 bool is_trs(const Eigen::Matrix3d& m) {
   const Eigen::Vector3d scale = m.colwise().norm();
   if (!(scale.minCoeff() > 1e-12)) return false;

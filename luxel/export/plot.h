@@ -8,8 +8,8 @@
 
 namespace luxel::export_ {
 
-/// How a series is drawn. `steps` fills the area under a staircase (histograms): each point is a
-/// step that reaches to the next point's x, the last one as far as the one before it.
+/// Drawing style of a series. `steps` fills the area under a staircase (histograms): each point is
+/// a step that reaches to the next point's x, the last one as far as the one before it.
 enum class Stroke { markers, line, dashed, steps };
 
 struct Series {

@@ -17,7 +17,7 @@ struct Axis {
   bool log = false;
   double low = 0, high = 1;
   std::vector<Tick> ticks;
-  /// Whether the axis has a place for the value at all.
+  /// False: the axis has no place for the value at all.
   bool can_show(double value) const;
   double position(double value) const;
 };

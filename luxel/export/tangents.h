@@ -18,7 +18,7 @@ scene::Mesh with_flat_normals(const scene::Mesh& mesh);
 /// or lacks the normals or coordinates for them.
 std::vector<Vec2> normal_map_places(const scene::Mesh& mesh, const scene::Material& material);
 
-/// Whether a triangle shows the map mirrored. Triangles that do share no vertex with others.
+/// A triangle shows the map mirrored. Such triangles share no vertex with others.
 bool is_mirrored(std::span<const Vec2> places, const std::array<uint32_t, 3>& triangle);
 
 /// TANGENT of glTF 2.0 for vertices whose triangles are all mirrored, or none: x, y, z along

@@ -15,7 +15,7 @@
 
 namespace luxel::export_ {
 
-/// What a picture was taken with, and what shows it again.
+/// The camera, size and exposure of a picture, enough to show it again.
 struct View {
   scene::Camera camera;
   int width = 0, height = 0;  ///< of the picture
@@ -27,7 +27,7 @@ struct View {
 /// orthographic camera. `origin`: Scene::origin of the camera's scene; the matrix stands in the
 /// world of its file.
 nlohmann::json to_json(const View& view, DVec3 origin = {});
-/// What to_json() wrote; none where it is something else.
+/// Reads the output of to_json(); none where `json` is something else.
 std::optional<View> view_of_json(const nlohmann::json& json, DVec3 origin = {});
 
 struct ViewPage {
@@ -37,7 +37,7 @@ struct ViewPage {
   size_t triangles = 0;                     ///< for the reader
   std::span<const std::byte> glb;           ///< of baked_glb()
   std::span<const image::Image> lightmaps;  ///< E, 4 channels, the pages of `glb`
-  /// What stands behind the background's radiance; nullptr or empty: nothing. The page carries it
+  /// Picture behind the background's radiance; nullptr or empty: nothing. The page carries it
   /// kSurroundingsWidth pixels wide, or as it is where it is narrower.
   const scene::Environment* environment = nullptr;
   /// The page carries these instead of `lightmaps`, with a slider and a colour for each.
@@ -45,7 +45,7 @@ struct ViewPage {
 };
 inline constexpr int kSurroundingsWidth = 512;
 
-/// Whether luxel was built with the page. The error says what to install.
+/// Ok where luxel was built with the page. The error says what to install.
 Status check_view_page();
 
 /// The whole page: a program (three.js and export/web/), the scene, its lightmaps and surroundings

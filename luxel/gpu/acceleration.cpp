@@ -7,7 +7,7 @@ namespace {
 
 using BuildInfo = VkAccelerationStructureBuildGeometryInfoKHR;
 
-/// How far an address is to be moved for Vulkan to take it. `step` is a power of two.
+/// Bytes from an address to the next one that Vulkan takes. `step` is a power of two.
 VkDeviceSize to_next(VkDeviceAddress address, VkDeviceSize step) {
   return (step - address % step) % step;
 }

@@ -7,7 +7,7 @@
 namespace luxel::gpu {
 namespace {
 
-/// What a memory type should be, best first.
+/// Properties that a memory type should have, best first.
 std::vector<VkMemoryPropertyFlags> wishes(Access access) {
   constexpr VkMemoryPropertyFlags kHost =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;

@@ -10,7 +10,7 @@ namespace luxel::gpu {
 
 using OwnedMemory = Owned<VkDeviceMemory, &VolkDeviceTable::vkFreeMemory>;
 
-/// Who touches a buffer's bytes.
+/// Parties that touch a buffer's bytes.
 enum class Access : uint8_t {
   device,     ///< the device alone; filled by a copy on it
   from_host,  ///< written by the processor, read by the device

@@ -24,7 +24,7 @@ class Commands {
 
   using Record = std::function<void(VkCommandBuffer)>;
 
-  /// What a picture of a window waits for and tells when it is done; null: nothing.
+  /// Semaphores that a window's picture waits for and signals when it is done; null: none.
   struct WindowSemaphores {
     VkSemaphore wait_for = VK_NULL_HANDLE;
     VkSemaphore signal = VK_NULL_HANDLE;

@@ -81,7 +81,7 @@ Result<VkInstance> make_instance(const std::vector<std::string>& extensions, Dev
   return instance;
 }
 
-/// What luxel asks of every device, as the chain of structures that Vulkan wants.
+/// Features that luxel asks of every device, as the chain of structures that Vulkan wants.
 struct Features {
   VkPhysicalDeviceFeatures2 base =
       structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
@@ -231,7 +231,7 @@ std::string names_of(const std::vector<Candidate>& all) {
   return out;
 }
 
-/// Whether it is a device that `params` asks for; `number` is its own.
+/// True: `params` asks for this device; `number` is its own.
 bool is_wanted(const Candidate& candidate, uint32_t number, const DeviceParams& params) {
   if (!candidate.info.lacks.empty()) return false;
   if (params.number) return *params.number == number;

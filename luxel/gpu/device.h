@@ -26,7 +26,8 @@ struct DeviceParams {
   /// Without a name or a number: whether it may be software that runs on the processor.
   bool may_be_software = true;
   bool validate = false;  ///< with Vulkan's validation layer: Device::messages()
-  /// What a window needs of Vulkan (glfwGetRequiredInstanceExtensions); empty: nothing is shown.
+  /// Vulkan extensions that a window needs (glfwGetRequiredInstanceExtensions); empty: nothing is
+  /// shown.
   std::vector<std::string> window_extensions;
 };
 
@@ -54,7 +55,7 @@ class Device {
 
   /// The memory type that has all `wanted` properties among those of `type_bits`; UINT32_MAX: none.
   uint32_t memory_type(uint32_t type_bits, VkMemoryPropertyFlags wanted) const;
-  /// What the validation layer has said: errors and warnings. May be called while others record.
+  /// Errors and warnings of the validation layer so far. May be called while others record.
   std::vector<std::string> messages() const;
 
   std::string name;

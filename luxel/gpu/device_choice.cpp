@@ -20,7 +20,7 @@ std::optional<uint32_t> number_of(std::string_view text) {
   return out;
 }
 
-/// Whether there is a device that is no software.
+/// True where the machine has a device other than software.
 bool has_card() {
   const auto devices = list_devices();
   return devices && std::ranges::any_of(*devices, [](const DeviceInfo& d) {

@@ -5,7 +5,7 @@
 
 namespace luxel::gpu {
 
-/// What --device asks for.
+/// The choice that --device makes.
 struct DeviceChoice {
   enum class Kind : uint8_t {
     processor,  ///< "cpu": alone

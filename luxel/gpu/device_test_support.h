@@ -1,4 +1,4 @@
-// What tests on a device share: one under the validation layer, which has nothing to say.
+// A device that tests share: it runs under the validation layer, which must stay silent.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -61,7 +61,7 @@ void change_layout(const Device& device, VkCommandBuffer commands, const Picture
 /// The pixels of level 0, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; whole rows, top first.
 Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& picture);
 
-/// How shaders look up between pixels and beyond edges.
+/// Filtering between pixels and addressing beyond edges when shaders look up.
 struct SamplerParams {
   VkFilter filter = VK_FILTER_LINEAR;
   VkSamplerAddressMode u = VK_SAMPLER_ADDRESS_MODE_REPEAT, v = VK_SAMPLER_ADDRESS_MODE_REPEAT;

@@ -26,7 +26,7 @@ Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, Piec
     }));
     const double took = std::max(seconds_since(start), 1e-9);
     seconds += took, first += some;
-    // What was cut short says that a piece may be larger only where it took long.
+    // A piece that was cut short changes the size only where it took long.
     const auto next = size_t(double(some) * std::min(kMostGrowth, kPieceSeconds / took));
     size.items = some < size.items && took < kPieceSeconds ? size.items : next;
   }

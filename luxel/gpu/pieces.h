@@ -20,8 +20,8 @@ struct PieceSize {
 using RecordPiece = std::function<void(VkCommandBuffer, size_t first, size_t count)>;
 /// Calls record(commands, first, count) for pieces of [0, count), one after the other, each of
 /// `most` items at most. Returns the seconds until the device was done, as the processor sees them.
-/// What reads the results needs a full_barrier() first, with which each piece begins. `asked`: may
-/// ask to stop between pieces; null: nobody does. Errors: the device is lost, cancelled.
+/// Each piece begins with a full_barrier(), and reading the results needs one first, too. `asked`:
+/// may ask to stop between pieces; null: nobody does. Errors: the device is lost, cancelled.
 Result<double> run_in_pieces(Commands& commands, size_t count, size_t most, PieceSize& size,
                              const RecordPiece& record, const Progress* asked = nullptr);
 

@@ -11,7 +11,7 @@ namespace luxel::gpu {
 /// Words of SPIR-V, as glslangValidator leaves them (luxel_shaders() in CMake).
 using Spirv = std::span<const uint32_t>;
 
-/// What both kinds of pipelines get besides buffers, whose addresses lie in the push constants.
+/// Inputs of both kinds of pipelines besides buffers, whose addresses lie in the push constants.
 struct Interface {
   uint32_t push_bytes = 0;                 ///< at most 128, which every device has
   std::vector<VkDescriptorType> bindings;  ///< of set 0, numbered from 0
@@ -32,12 +32,12 @@ Result<Pipeline> make_compute_pipeline(const Device& device, Spirv shader,
                                        const Interface& interface,
                                        const std::vector<uint32_t>& constants = {});
 
-/// How triangles or lines become pixels. Vertices are read from buffers, not bound.
+/// Settings by which triangles or lines become pixels. Vertices are read from buffers, not bound.
 struct DrawParams {
   Spirv vertex;
   Spirv fragment;  ///< empty: depth alone is drawn
   Interface interface;
-  /// What constant_id 0, 1, ... are in both shaders, 32 bits each.
+  /// Values of constant_id 0, 1, ... in both shaders, 32 bits each.
   std::vector<uint32_t> constants;
   std::vector<VkFormat> colors;   ///< of the pictures that are drawn into
   std::optional<VkFormat> depth;  ///< none: no depth
@@ -60,8 +60,8 @@ void bind(const Device& device, VkCommandBuffer commands, const Pipeline& pipeli
                                &push);
 }
 
-/// What one binding of a set is. Pictures are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, those
-/// without a sampler (storage images) in VK_IMAGE_LAYOUT_GENERAL.
+/// One binding of a set. Pictures are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, those without a
+/// sampler (storage images) in VK_IMAGE_LAYOUT_GENERAL.
 struct Binding {
   const Picture* picture = nullptr;
   VkSampler sampler = VK_NULL_HANDLE;

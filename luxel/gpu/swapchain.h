@@ -9,7 +9,7 @@
 
 namespace luxel::gpu {
 
-/// What a window draws on. Ends before the device and the window do.
+/// The surface that a window draws on. Ends before the device and the window do.
 class Surface {
  public:
   /// Takes `surface` over. Errors (no_device): the device cannot show pictures in this window.

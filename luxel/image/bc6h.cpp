@@ -66,7 +66,7 @@ int quantise(float half, int bits) {
   return best;
 }
 
-/// Whether a block of this mode can hold both ends, either way round.
+/// True: a block of this mode can hold both ends, either way round.
 bool can_hold(const Mode& mode, const std::array<Ints, 2>& end) {
   if (!mode.has_differences()) return true;
   const int most = (1 << (mode.difference_bits - 1)) - 1;
@@ -318,7 +318,7 @@ struct FileWriter {
   }
 };
 
-/// What the blocks are, in the words of the Khronos data format [DataFormat, section 5]: a basic
+/// Describes the blocks in the words of the Khronos data format [DataFormat, section 5]: a basic
 /// descriptor with one sample.
 void put_data_format(FileWriter& out) {
   constexpr uint32_t kBc6h = 133, kBt709 = 1, kLinear = 1, kFloat = 0x80;

@@ -133,8 +133,8 @@ Status check_finite(const Image& image, std::string_view name) {
   return {};
 }
 
-/// How many bytes of pixels a byte of the file can stand for. Deflate reaches 1032, run lengths 64
-/// and PIZ's Huffman codes less; DWA keeps blocks of one value in next to nothing.
+/// Bytes of pixels that a byte of the file can stand for, at most. Deflate reaches 1032, run
+/// lengths 64 and PIZ's Huffman codes less; DWA keeps blocks of one value in next to nothing.
 uint64_t largest_ratio(Imf::Compression compression) {
   const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
   return dwa ? 1 << 14 : 1100;

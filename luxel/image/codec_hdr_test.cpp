@@ -150,7 +150,7 @@ TEST(Hdr, RoundTripIsWithinHalfAStep) {
         for (int c = 0; c < 3; ++c)
           ASSERT_NEAR(a[c], b[c], max_component(a) / 256 * 1.0001f) << x << " " << y;
       }
-    // What has been through it once stays as it is.
+    // Decoded pixels stay as they are when they are coded again.
     EXPECT_EQ(decode(text_of(encode_hdr(*back)))->data, back->data);
   }
 }

@@ -24,8 +24,8 @@ uint32_t big_endian32(Bytes p) {
   return uint32_t(p[0]) << 24 | uint32_t(p[1]) << 16 | uint32_t(p[2]) << 8 | uint32_t(p[3]);
 }
 
-/// What is wrong with the chunks of a PNG file; empty when they are whole up to IEND.
-/// A chunk: length of its data, type (4 letters), data, CRC over type and data.
+/// Damage in the chunks of a PNG file; empty when they are whole up to IEND. A chunk: length of its
+/// data, type (4 letters), data, CRC over type and data.
 std::string damage_of_png(Bytes bytes) {
   size_t at = kPngMagic.size();
   for (;;) {

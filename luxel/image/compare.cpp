@@ -21,7 +21,7 @@ Status check_comparable(const Image& image, std::string_view name) {
   return {};
 }
 
-/// What a channel of a pixel adds to the sums.
+/// Contribution of a pixel's channel to the sums, and the sums themselves.
 struct Sums {
   double b = 0, d = 0, abs_d = 0, d2 = 0, relative2 = 0;
   double max_abs = -1, max_b = -std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// How far two images lie apart. B is the reference everywhere.
+// Distance between two images. B is the reference everywhere.
 #pragma once
 
 #include <array>
@@ -40,10 +40,10 @@ struct Difference {
       0;  ///< 20 log10(peak / rmse); infinite for equal images, minus infinity for a black b
 };
 
-/// What is divided by the mean of a black reference is infinite, or 0 when nothing differs. Sums
-/// are taken in double, per row and then over the rows, so any number of threads gives the same
-/// bits. a, b and the mask fit each other (covered_pixels says so). When `progress` is cancelled
-/// the work ends early, with numbers of no meaning.
+/// Measures over the mean of a black reference are infinite, or 0 when nothing differs. Sums are
+/// taken in double, per row and then over the rows, so any number of threads gives the same bits.
+/// a, b and the mask fit each other (covered_pixels says so). When `progress` is cancelled the work
+/// ends early, with numbers of no meaning.
 Difference difference(const Image& a, const Image& b, const Mask& covered,
                       const Progress* progress = nullptr);
 

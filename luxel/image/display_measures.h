@@ -1,5 +1,5 @@
-// How two pictures differ on a screen, in steps of 0 to 255: the measures of [Moreno05, chapter 5].
-// All take 8-bit display values with 3 or 4 channels; the fourth is not looked at.
+// Differences of two pictures on a screen, in steps of 0 to 255: the measures of [Moreno05, chapter
+// 5]. All take 8-bit display values with 3 or 4 channels; the fourth is not looked at.
 #pragma once
 
 #include <array>

@@ -28,7 +28,7 @@ struct FilterRow {
   std::span<const uint8_t> here, left, above, above_left;
 };
 
-/// What the filters of PNG leave of a byte x. (PNG specification, 9.2; the names are its own)
+/// A byte x after one of PNG's filters. (PNG specification, 9.2; the names are its own)
 constexpr uint8_t kFilters = 5;
 uint8_t left_by(uint8_t filter, int x, int a, int b, int c) {
   switch (filter) {

@@ -10,8 +10,8 @@
 namespace luxel::image {
 
 struct FlipParams {
-  /// How large a pixel is seen. The papers' observer: 0.7 m from a screen 0.7 m and 3840 pixels
-  /// wide.
+  /// Apparent size of pixels. The papers' observer sits 0.7 m from a screen that is 0.7 m and 3840
+  /// pixels wide.
   double pixels_per_degree = 3840 * kPiDouble / 180;
   /// Advances by the rows, of each exposure. When it is cancelled the work ends early and the map
   /// is not to be used.

@@ -33,8 +33,8 @@ Image ramps() {
 }
 double mean(const Image& map) { return mean_over(map, Mask(map.data.size(), 1)); }
 
-/// What tools/flip_reference.py prints: an evaluation of the papers' equations apart from luxel, by
-/// dense two-dimensional convolutions in double precision.
+/// Output of tools/flip_reference.py, an evaluation of the papers' equations independent of luxel,
+/// by dense two-dimensional convolutions in double precision.
 struct Expected {
   double mean;
   std::array<double, 6> at;

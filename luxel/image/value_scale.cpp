@@ -88,7 +88,8 @@ ValueScale scale_for(std::span<const float> values, std::string_view unit) {
   out.top = tops.empty() ? wanted : tops.front();
   out.has_more = most > out.top;
   out.levels = steps_between(std::max(least, most * 1e-3), most);
-  // What differs by less than a part in a thousand is even, and noise alone would draw lines.
+  // Values that differ by less than a part in a thousand count as even: noise alone would draw
+  // lines.
   if (out.levels.size() < kFewestLevels && most - least > 1e-3 * most)
     out.levels = multiples_between(least, most);
   if (out.levels.size() > kMostLevels)

@@ -162,8 +162,8 @@ void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, const
   }
 }
 
-/// Whether a reader of Assimp is one for the ending of `path`. It names several, such as "mesh
-/// mesh.xml".
+/// True where an Assimp reader serves the ending of `path`. A reader names several endings, such as
+/// "mesh mesh.xml".
 bool is_for(const aiImporterDesc& reader, const std::string& path) {
   std::string_view endings = reader.mFileExtensions;
   for (std::string_view one = next_word(endings); !one.empty(); one = next_word(endings))
@@ -199,7 +199,7 @@ Result<const aiScene*> read_file_with(Assimp::Importer& importer, const SourceFi
   return importer.ApplyPostProcessing(aiProcess_SortByPType);
 }
 
-/// What Assimp gets in the place of a file that its reader could misread.
+/// Text that Assimp gets in the place of a file that its reader could misread.
 struct Rewritten {
   std::optional<std::string> text;
   DVec3 near = {};                  ///< what vertices are relative to

@@ -11,7 +11,7 @@
 
 namespace luxel::import {
 
-/// What Assimp is told that the scene's file is called: it goes by the ending, luxel by the
+/// The path of the scene's file as Assimp is told it: Assimp goes by the ending, luxel by the
 /// content.
 std::string path_for_assimp(const SourceFile& source);
 

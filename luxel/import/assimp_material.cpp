@@ -85,7 +85,7 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   aiString name;
   in.Get(AI_MATKEY_NAME, name);
   scene::Material out = default_material();
-  // What Assimp makes up for faces without a material; that of an .x has no name.
+  // Assimp makes up a material for faces without one; in an .x file it has no name.
   if (std::strcmp(name.C_Str(), AI_DEFAULT_MATERIAL_NAME) == 0) return out;
   if (textures.pictures.source.extension == ".x" && name.length == 0) return out;
   out.name = name.C_Str();

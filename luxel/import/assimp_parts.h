@@ -22,8 +22,8 @@ inline Mat34 mat34_of(const aiMatrix4x4& m) {
 /// polygon of too many corners; memory.
 Status split_polygons(aiScene& scene, const SourceFile& source, std::vector<std::string>& warnings);
 
-/// What turns the file's units and axes into metres with Y up, above Assimp's own root node. Warns
-/// when the file states nonsense.
+/// Turns the file's units and axes into metres with Y up, above Assimp's own root node. Warns when
+/// the file states nonsense.
 Mat34 world_from_file(const aiScene& in, const SourceFile& source,
                       std::vector<std::string>& warnings);
 

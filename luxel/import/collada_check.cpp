@@ -10,7 +10,7 @@
 namespace luxel::import {
 namespace {
 
-/// What Assimp skips between the numbers of a list.
+/// Characters that Assimp skips between the numbers of a list.
 constexpr std::string_view kListBlanks = " \t\r\n\f";
 
 /// A limit for indices into what the file does not say.
@@ -156,7 +156,7 @@ struct ColladaLimit {
   std::string_view source;
 };
 
-/// What each of a point's indices must be below.
+/// Upper limits (exclusive) of each of a point's indices.
 Result<std::vector<ColladaLimit>> limits_of(const ColladaWalk& walk, const XmlTag& tag) {
   const ColladaLists& lists = *walk.lists;
   constexpr uint64_t kMostOffsets = 1000;
@@ -188,8 +188,8 @@ Result<uint64_t> check_indices(const ColladaWalk& walk, const XmlTag& tag, bool 
   return count;
 }
 
-/// How many points a <p> must have; none when it may have any number. SketchUp states wrong counts
-/// for lines, which Assimp knows.
+/// Points that a <p> must have; none when it may have any number. SketchUp states wrong counts for
+/// lines, which Assimp knows.
 std::optional<uint64_t> points_needed(const ColladaLists& lists) {
   if (lists.kind == "polylist") return lists.vcount_sum;
   if (lists.kind == "triangles") return 3 * lists.count;

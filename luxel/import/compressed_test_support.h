@@ -215,7 +215,7 @@ inline MeshoptGltf meshopt_gltf(const Surface& surface,
   return m;
 }
 
-/// How far decoded values may be from the originals.
+/// Largest errors of decoded values against the originals.
 struct Bounds {
   float position, normal, uv;
 };

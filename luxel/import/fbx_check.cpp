@@ -21,7 +21,7 @@ struct FbxElement {
   std::string_view all_values{};  ///< as they stand in a binary file
 };
 
-/// What the file's models hold, by the list of connections.
+/// The file's models and the connections between them.
 struct FbxModels {
   std::map<uint64_t, uint32_t> number{{0, 0}};  ///< of an id; id 0 is the scene
   std::vector<size_t> at{0};

@@ -13,7 +13,7 @@ namespace luxel::import {
 /// reader that can say what is wrong with it. A glTF file is ".gltf" or ".glb".
 std::string format_of(const std::vector<std::byte>& bytes, const std::string& ending);
 
-/// Whether luxel reads the format itself, or checks a file before Assimp gets it.
+/// True: luxel reads the format itself, or checks a file before Assimp gets it.
 bool is_own_format(const std::string& extension);
 
 /// A binary .stl file has no mark, but a size that follows from its number of facets.

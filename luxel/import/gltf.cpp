@@ -11,7 +11,7 @@ namespace luxel::import {
 namespace {
 
 /// glTF has no word for the light around a scene; luxel's own files say it in the scene's extras.
-/// What is not three finite numbers >= 0 is somebody else's and is left alone.
+/// Values other than three finite numbers >= 0 are somebody else's and are left alone.
 Rgb background_of(const nlohmann::json& document) {
   const size_t scene = document.value("scene", size_t(0));
   const nlohmann::json none;

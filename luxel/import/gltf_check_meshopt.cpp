@@ -91,8 +91,8 @@ bool is_marked_fallback(const Json& buffer) {
   return false;
 }
 
-/// Who uses a buffer: the first view that reads it plainly, the first that reads compressed bytes
-/// from it, and whether any view would lie in it if it were not compressed.
+/// Views that use a buffer: the first that reads it plainly, and the first that reads compressed
+/// bytes from it. `replaced`: some view would lie in it if it were not compressed.
 struct Use {
   static constexpr size_t kNobody = SIZE_MAX;
   size_t plain = kNobody, compressed = kNobody;

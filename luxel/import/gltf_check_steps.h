@@ -67,7 +67,7 @@ struct MeshoptView {
 Result<std::optional<MeshoptView>> meshopt_view_of(const Json& document, const Json& view,
                                                    const std::string& where);
 
-/// Whether KHR_draco_mesh_compression brings the primitive.
+/// True: the primitive is compressed by KHR_draco_mesh_compression.
 bool is_draco(const Json& primitive);
 
 /// Buffers that hold nothing that is read, because meshopt brings all of their

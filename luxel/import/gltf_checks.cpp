@@ -24,7 +24,8 @@ constexpr std::string_view kSupported[] = {
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
-    // What cannot be decoded is said where a texture is needed: a normal map is not.
+    // Textures that cannot be decoded are reported where they are needed. A normal map is not
+    // needed.
     "KHR_texture_basisu",
     "KHR_texture_transform",
     // Shine, and data about data.

@@ -1,4 +1,4 @@
-// What must hold before tinygltf sees a glTF document.
+// Checks that a glTF document must pass before tinygltf sees it.
 #pragma once
 
 #include <cstddef>

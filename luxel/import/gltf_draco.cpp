@@ -23,7 +23,7 @@ draco::DecoderBuffer buffer_over(DracoBytes bytes) {
   return buffer;
 }
 
-/// What the stream says that it holds, read before anything is allocated for it.
+/// Counts that the stream states, read before anything is allocated for them.
 struct Counts {
   uint32_t faces = 0;
   uint32_t vertices = 0;  ///< at most as many as the points that a seamed mesh has
@@ -120,7 +120,7 @@ Result<std::vector<unsigned char>> values_of(const draco::Mesh& mesh, uint32_t i
                 where, mesh.num_points(), accessor.count);
   const size_t size = size_t(components) *
                       size_t(tinygltf::GetComponentSizeInBytes(uint32_t(accessor.componentType)));
-  // What Draco made of damaged data need not hold together.
+  // Draco's output for damaged data may be inconsistent.
   const size_t rows = size_t(attribute->byte_stride()) == size && attribute->byte_offset() == 0
                           ? attribute->buffer()->data_size() / size
                           : 0;

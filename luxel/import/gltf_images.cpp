@@ -18,7 +18,7 @@ std::string text_in(const Json& image, const char* key) {
   return text == image.end() || !text->is_string() ? "" : text->get<std::string>();
 }
 
-/// What images with the same bytes have in common.
+/// A key that images with the same bytes share.
 std::string place_of(const Json& image, size_t index) {
   if (image.contains("bufferView")) return fmt::format("view {}", image["bufferView"].dump());
   const std::string uri = text_in(image, "uri");

@@ -9,7 +9,7 @@
 namespace luxel::import {
 namespace {
 
-/// What tinygltf's callbacks for files are given: it reads the buffers by them, and nothing else.
+/// User data of tinygltf's file callbacks: it reads the buffers by them, and nothing else.
 struct BufferFiles {
   const SourceFile& source;
   Error error{};  ///< of the first file that could not be read; no message: none

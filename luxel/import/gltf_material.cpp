@@ -115,7 +115,7 @@ float mean_channel(const scene::Scene& scene, const TextureRef& ref, size_t chan
   return rgba.empty() ? 1.0f : float(double(sum) * 4 / double(rgba.size()) / 255);
 }
 
-/// What a dielectric mirrors head on. An index of 0 stands for infinity. [KHR_materials_ior]
+/// Reflectance of a dielectric head on. An index of 0 stands for infinity. [KHR_materials_ior]
 float dielectric_f0(const tinygltf::Material& in) {
   const auto it = in.extensions.find("KHR_materials_ior");
   if (it == in.extensions.end()) return scene::kDielectricF0;

@@ -135,7 +135,7 @@ uint32_t material_of(GltfReader& reader, const tinygltf::Primitive& primitive) {
   return reader.default_material;
 }
 
-/// Whether the primitive is drawn; says why not.
+/// True where the primitive is drawn; else a warning says why not.
 bool has_surface(GltfReader& reader, const tinygltf::Primitive& primitive,
                  const std::string& where) {
   if (primitive.mode >= TINYGLTF_MODE_POINTS && primitive.mode <= TINYGLTF_MODE_LINE_STRIP) {

@@ -42,7 +42,7 @@ std::pair<Mat34, DMat34> local_transforms(const tinygltf::Node& node) {
   return {local, exact};
 }
 
-/// What extras say by "luxel": {"KEY": ...} or by "FLAT_KEY"; null where they do not.
+/// The value that extras give as "luxel": {"KEY": ...} or as "FLAT_KEY"; null where they do not.
 const tinygltf::Value* luxel_extra(const tinygltf::Value& extras, const char* key,
                                    const char* flat_key) {
   if (!extras.IsObject()) return nullptr;
@@ -150,8 +150,8 @@ Result<std::vector<Mat34>> copies_of(const GltfReader& reader, const tinygltf::N
   return copies;
 }
 
-/// What extras say of a lightmap: those of nodes and meshes, "luxel": {"density": 2, "bake": false}
-/// or, as Blender's custom properties, "luxel_density": 2, "luxel_bake": false.
+/// Lightmap settings in the extras of nodes and meshes: "luxel": {"density": 2, "bake": false} or,
+/// as Blender's custom properties, "luxel_density": 2, "luxel_bake": false.
 struct LightmapExtras {
   std::optional<float> density;
   std::optional<bool> bake;
@@ -180,7 +180,7 @@ LightmapExtras lightmap_extras(GltfReader& reader, const tinygltf::Value& extras
   return out;
 }
 
-/// What the first says, else the second.
+/// Values of the first, else of the second.
 LightmapExtras first_of(const LightmapExtras& a, const LightmapExtras& b) {
   return {a.density ? a.density : b.density, a.bake ? a.bake : b.bake};
 }

@@ -19,7 +19,8 @@ struct WorldTransforms {
   std::vector<DMat34> exact;
 };
 
-/// What the steps of the reader share. Materials and meshes keep their glTF index in the scene.
+/// State that the steps of the reader share. Materials and meshes keep their glTF index in the
+/// scene.
 struct GltfReader {
   const nlohmann::json& document;  ///< as the file says it, without its nodes
   const tinygltf::Model& model;

@@ -21,7 +21,7 @@ constexpr size_t kMostCandela = size_t(1) << 26;  // 256 MiB of floats
 /// Files write angles with two decimals or so.
 constexpr double kAngleRounding = 0.01;
 
-/// What stands before the numbers.
+/// The part of a file before its numbers.
 struct Header {
   bool has_lamp_factor = true;  ///< up to 1991; later the number at its place has other meanings
   std::string tilt;

@@ -11,7 +11,7 @@
 
 namespace luxel::import {
 
-/// What an IES file says of a luminaire.
+/// A luminaire as an IES file describes it.
 struct Ies {
   scene::LightProfile profile;        ///< all factors in, symmetries unfolded
   double lumens = 0;                  ///< lamps * lumens per lamp; 0: absolute photometry

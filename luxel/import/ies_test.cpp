@@ -64,8 +64,9 @@ TEST(Ies, ReadsAnglesAndCandela) {
   EXPECT_TRUE(ies->warnings.empty());
 }
 
-// What differs from year to year: the first line, and what follows the ballast factor. In 1986 and
-// 1991 it is a factor, since 1995 "future use", in 2019 the way the file was made, as 1.10000.
+// Files of different years differ in the first line and in the number after the ballast factor. In
+// 1986 and 1991 that is a factor, since 1995 "future use", in 2019 the way the file was made, as
+// 1.10000.
 TEST(Ies, TheYearSaysWhatTheNumbersMean) {
   for (const char* head :
        {"", "Acme lamp\nof 1987\n", "IESNA91\n[TEST] 1\n", "\xef\xbb\xbfIESNA91\n"}) {

@@ -12,7 +12,7 @@
 
 namespace luxel::import {
 
-/// What a file holds.
+/// Contents of a file.
 struct Imported {
   scene::Scene scene;                 ///< validated (luxel/scene/validate.h)
   std::vector<std::string> warnings;  ///< one sentence each
@@ -28,7 +28,7 @@ struct Imported {
 
 enum class Up : uint8_t { y, z };
 
-/// How a file is read.
+/// Settings for reading a file.
 struct ImportParams {
   /// Crease angle of smooth normals for meshes without normals [degrees], 0 to 180; 0: they are
   /// flat. Not set: kUsualCreaseDeg for .ply, .stl and .obj, unless that states smoothing groups,
@@ -56,7 +56,7 @@ inline constexpr float kUsualCreaseDeg = 60;
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params = {},
                               uint64_t max_memory_bytes = 0);
 
-/// Whether a file is glTF: by what it begins with, or by its name where that says nothing.
+/// True for a glTF file, judged by its first bytes, or by its name where those say nothing.
 bool is_gltf_file(const std::filesystem::path& path);
 
 /// Imports a file that lies in memory and names no other. `name` is for messages; its extension

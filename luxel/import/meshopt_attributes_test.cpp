@@ -35,7 +35,8 @@ Bytes8 column(const Bytes8& elements, size_t first) {
   return out;
 }
 
-/// What a byte of the elements becomes that changes at some of them only.
+/// One byte of each element: a running sum that starts at `value` and changes by `deltas` at some
+/// elements only.
 Bytes8 running(uint8_t value, std::map<size_t, int> deltas, size_t count) {
   Bytes8 out;
   for (size_t i = 0; i < count; ++i) out.push_back(value = uint8_t(value + deltas[i]));

@@ -1,4 +1,4 @@
-// How deep the parts of a file may lie in each other. For this room only.
+// Limits on how deep the parts of a file may lie in each other. For this room only.
 #pragma once
 
 #include <optional>

@@ -80,7 +80,7 @@ TEST(Nesting, DeepColladaNodesNameTheLineAndTheLimit) {
               AllOf(HasSubstr("a.dae, line 1"), HasSubstr("more than 1000 elements")));
   EXPECT_THAT(error_of_text("a.dae", dae("", nested("<node>", "</node>", 900))),
               HasSubstr("no triangles"));
-  // What is no element does not hide any: a comment in quotes, a quote in a comment.
+  // Comments in quotes and quotes in comments hide no elements.
   const std::string tricks = "<x a=\"<!--\"/><!-- ' --><![CDATA[ <!-- ]]><?x <!-- ?>";
   EXPECT_THAT(error_of_text("a.dae", dae(tricks, nested("<node>", "</node>", kDeep))),
               HasSubstr("more than 1000 elements"));
@@ -108,7 +108,7 @@ TEST(Nesting, DeepBlocksOfFbx) {
               AllOf(HasSubstr("a.fbx, line 1007: more than 1000 blocks")));
   EXPECT_THAT(error_of_text("a.fbx", nested_binary_fbx(kDeep)),
               AllOf(HasSubstr("a.fbx, byte 14027: more than 1000 blocks")));
-  // What Assimp says of the same file with less of it: no objects.
+  // With fewer blocks Assimp reads the same file, and finds no objects in it.
   EXPECT_THAT(error_of_text("a.fbx", kFbxHead + nested("a: {\n", "}\n", 900)),
               Not(HasSubstr("blocks")));
   EXPECT_THAT(error_of_text("a.fbx", nested_binary_fbx(900)), Not(HasSubstr("blocks")));

@@ -67,7 +67,7 @@ std::vector<std::string> command_of(const fs::path& program, const fs::path& fil
   return words;
 }
 
-/// What the process said: its warnings, and the sentence of its error, empty without one. Each line
+/// Output of the process: its warnings, and the sentence of its error, empty without one. Each line
 /// is an event of --progress-json.
 struct Said {
   std::vector<std::string> warnings;

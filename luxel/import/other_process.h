@@ -8,7 +8,7 @@
 
 namespace luxel::import {
 
-/// What the process may use. It sets these limits for itself before it opens the file.
+/// Limits of the process, which it sets for itself before it opens the file.
 struct ProcessLimits {
   double seconds = 0;         ///< of processor time
   uint64_t memory_bytes = 0;  ///< as for import_scene()

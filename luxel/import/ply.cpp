@@ -1,4 +1,4 @@
-// What of a .ply file are surfaces, and the plain file that Assimp gets in its place.
+// Surfaces of a .ply file, and the plain file that Assimp gets in its place.
 #include "luxel/import/ply.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ Status read_property(const PlyElement& element, size_t index, bool is_used, uint
   return {};
 }
 
-/// What of a vertex or material Assimp understands, under the name that it gets.
+/// A property of vertices or materials that Assimp understands, and the name that it gets.
 struct KnownName {
   std::string_view stated, plain;
 };
@@ -132,7 +132,7 @@ KeptProperties kept_of_vertex(const PlyElement& element, bool is_text) {
   return out;
 }
 
-/// What is read of a file, before it is written.
+/// Surfaces as read from a file, before they are written.
 struct Surfaces {
   KeptProperties of_vertex, of_material;
   std::string vertices, material;       ///< kept numbers, one element after the other

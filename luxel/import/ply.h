@@ -27,7 +27,7 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-/// What the text before the numbers says.
+/// The text before the numbers.
 struct PlyHeader {
   enum class Format { none, ascii, little, big } format = Format::none;
   std::vector<PlyElement> elements;

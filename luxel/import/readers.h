@@ -1,4 +1,4 @@
-// What the files of this room share. For this room only.
+// Helpers that the files of this room share. For this room only.
 #pragma once
 
 #include <filesystem>
@@ -54,19 +54,19 @@ Status check_fbx(const SourceFile& source);
 /// Merges vertices that agree in every bit of every attribute, in the order of their first use.
 void join_identical_vertices(scene::Mesh& mesh);
 
-/// Whether a material asks for the alpha of vertices.
+/// A material asks for the alpha of vertices.
 inline bool counts_alpha(const scene::Scene& scene, uint32_t material) {
   return scene.materials[material].alpha_mode != scene::AlphaMode::opaque;
 }
 /// Most files state an alpha of 1 with every colour: it is not kept.
 void drop_alphas_of_one(scene::Mesh& mesh);
 
-/// What a surface is made of when its file does not say: white that reflects 0.8. glTF's own
-/// default would be base colour 1 with metallic 1, that is black to a diffuse solver; a white of 1
-/// never loses light and would be clamped.
+/// Material of surfaces whose file states none: white that reflects 0.8. glTF's own default would
+/// be base colour 1 with metallic 1, that is black to a diffuse solver; a white of 1 never loses
+/// light and would be clamped.
 scene::Material default_material();
 
-/// What a library says (several lines, full stops) as the end of a sentence of ours.
+/// A library's message (several lines, full stops) as the end of a sentence of ours.
 std::string one_sentence(std::string text);
 
 /// "mesh 3 (chair)"

@@ -1,4 +1,4 @@
-// How much memory reading a scene may take.
+// The memory that reading a scene may take.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ class ReadingMemory {
   MemoryLimit limit_;
 };
 
-/// Whether a library says by words of its own that an allocation failed.
+/// True where a library says in its own words that an allocation failed.
 bool says_no_memory(const Error& error);
 
 /// The bytes of a file, taken off `memory` first. Errors: those of read_file() and of take().

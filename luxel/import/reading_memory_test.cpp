@@ -147,7 +147,7 @@ std::string stl_of_triangles() {
          "endsolid a\n";
 }
 
-/// What the kernel says of this process, in bytes.
+/// A value of /proc/self/status, in bytes.
 uint64_t status_of_process(const std::string& key) {
   std::ifstream status("/proc/self/status");
   uint64_t kilobytes = 0;
@@ -165,7 +165,7 @@ TEST_P(GrowingFiles, StayWithinTheCap) {
   return_free_memory();
   std::ofstream("/proc/self/clear_refs") << "5";  // the peak is that from now on
   const uint64_t cap = resident_bytes() + 100 * kMiB;
-  // What tests before have freed is taken first, where they ran in this process.
+  // Memory that earlier tests in this process have freed is taken first.
   const uint64_t freed = status_of_process("VmData:") - resident_bytes();
   const auto imported = import_scene(file, {}, cap);
   EXPECT_FALSE(imported);

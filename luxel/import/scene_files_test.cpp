@@ -25,7 +25,7 @@ struct Places {
     for (const char* file : {"scene/pics/in.png", "scene/in.png", "more/extra.png", "secret.png"})
       root.write(file, file);
   }
-  /// What the file holds, or the error's sentence.
+  /// Contents of the file, or the error's sentence.
   std::string read(const std::string& stated) const {
     ReadingMemory memory(0);
     const auto bytes = read_named_file(files, stated, "a.obj: the texture of wall", memory);

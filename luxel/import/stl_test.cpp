@@ -95,7 +95,7 @@ TEST(UnitsAndAxes, OfFilesThatStateNeither) {
     params.unit_m = 0.01f, params.up = Up::z;
     const scene::Scene scene = scene_of(import_scene(file, params));
     EXPECT_NEAR(drawn_area(scene), 1, 1e-5) << name;
-    // What looked along z looks up, and what lay at +y lies behind, at -z.
+    // Normals along z point up now, and +y has become -z, behind.
     expect_near(scene::front_normal(scene, 0, 0), {0, 1, 0}, 1e-6f);
     const Box3 box = scene::world_bounds(scene);
     expect_near(box.lower, {0, 0, -1}, 1e-6f);

@@ -47,7 +47,7 @@ struct Words {
   }
 };
 
-/// What is left of a file, and what is written of it.
+/// The rest of a file, and the text written from it so far.
 struct Walk {
   const SourceFile& source;
   Words words;
@@ -85,7 +85,7 @@ Result<uint64_t> next_index(Walk& walk, uint64_t limit, const char* what) {
   return uint64_t(value);
 }
 
-/// How many things follow, each of which takes at least one byte.
+/// The number of things that follow, each of which takes at least one byte.
 Result<uint64_t> next_count(Walk& walk) {
   const uint64_t left = walk.words.text.size() - walk.words.at;
   LUXEL_TRY(const std::string_view word, next_word(walk));
@@ -102,7 +102,7 @@ Result<uint64_t> next_count(Walk& walk) {
 template <class T = float>
 Result<T> next_number(Walk& walk) {
   LUXEL_TRY(const std::string_view word, next_word(walk));
-  // What old compilers print for a number that is none; Assimp takes it for 0, too.
+  // Old compilers print this for a number that is none; Assimp takes it for 0, too.
   if (word.find(".#IND") != word.npos || word.find(".#QNAN") != word.npos) return T(0);
   if (const auto value = finite_number<T>(word); value && std::isfinite(float(*value)))
     return *value;

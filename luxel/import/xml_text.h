@@ -73,8 +73,8 @@ inline std::string_view attribute(std::string_view element, std::string_view nam
   return {};
 }
 
-/// Whether a parser would make something else of the value, so that names cannot be compared as
-/// they stand.
+/// True: a parser would turn the value into something else, so names cannot be compared as they
+/// stand.
 inline bool needs_decoding(std::string_view value) {
   for (size_t at = 0; (at = value.find_first_of("&\t\r\n", at)) != value.npos; ++at)
     if (!value.substr(at).starts_with("&amp;")) return true;

@@ -1,10 +1,10 @@
-// How much a group of lights may bring to a point. C++ and GLSL.
+// Estimate of the light that a group of lights may bring to a point. C++ and GLSL.
 #ifndef LUXEL_LIGHT_BOTH_LIGHT_GROUP_H
 #define LUXEL_LIGHT_BOTH_LIGHT_GROUP_H
 #include "luxel/base/both_language.h"
 BOTH_BEGIN
 
-// What light::LightNode has of it, which says what it means.
+// Members of light::LightNode, which says what they mean.
 struct LightGroup {
   vec3 centre;
   float radius_m, power;
@@ -14,7 +14,7 @@ struct LightGroup {
   float cos_angle, sin_angle, reach_m;
 };
 
-// Whether a point lies where no light of the group can leave to. All cones with their apex in the
+// True where no light of the group leaves towards the point. All cones with their apex in the
 // sphere lie in the cone of the same angle whose apex lies radius / sin(angle) behind the centre.
 BOTH bool outside_cone(LightGroup group, vec3 from_centre) {
   if (group.sin_angle <= 0) return false;

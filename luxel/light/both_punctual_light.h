@@ -1,4 +1,4 @@
-// How the light of points, spots and suns falls off. [KHR_lights_punctual] C++ and GLSL.
+// Falloff of the light of points, spots and suns. [KHR_lights_punctual] C++ and GLSL.
 #ifndef LUXEL_LIGHT_BOTH_PUNCTUAL_LIGHT_H
 #define LUXEL_LIGHT_BOTH_PUNCTUAL_LIGHT_H
 #include "luxel/base/both_language.h"

@@ -1,4 +1,4 @@
-// What an emissive triangle sends to a point, and points of it to aim at. C++ and GLSL.
+// Light of an emissive triangle at a point, and points of the triangle to aim at. C++ and GLSL.
 #ifndef LUXEL_LIGHT_BOTH_TRIANGLE_LIGHT_H
 #define LUXEL_LIGHT_BOTH_TRIANGLE_LIGHT_H
 #include "luxel/base/both_triangle.h"

@@ -233,7 +233,7 @@ Status light_again_on_device(const LitElements& in, std::span<const uint32_t> wh
 
 namespace {
 
-/// What looks at direct light again.
+/// Looks at the direct light of some elements again.
 struct LookAgain {
   const LitElements& in;
   const DirectParams& params;

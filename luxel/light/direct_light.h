@@ -62,7 +62,7 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Ele
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress);
 
-/// What direct light is worked out from.
+/// Elements, and the scene and lights that light them.
 struct LitElements {
   const scene::Scene& scene;
   const transport::Elements& elements;

@@ -11,7 +11,7 @@ namespace luxel::light {
 
 /// The layer that each light belongs to; nothing where light is not told apart.
 void add_to(Digest& digest, const LightLayers* layers);
-/// What light drawn with these parameters depends on.
+/// Adds the parameters that drawn light depends on.
 void add_to(Digest& digest, const DirectParams& params);
 
 /// All that `direct` knows of some elements, in their order.

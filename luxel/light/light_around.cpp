@@ -15,7 +15,8 @@ namespace {
 /// Elements whose direct light is taken at a time: what they need stays below 100 MB.
 constexpr size_t kMostElements = 1 << 19;
 
-/// What rays bring that is not direct light of punctual lights: reflected light and the soft sky.
+/// Rays and the radiance that they bring, without direct light of punctual lights: reflected light
+/// and the soft sky.
 struct Arrivals {
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;

@@ -16,8 +16,7 @@
 
 namespace luxel::light {
 
-/// What the light is taken from: a scene with its lights, and a solver's answer for E of every
-/// surface's front side.
+/// A scene with its lights, and a solver's answer for E of every surface's front side.
 struct LitScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -25,7 +24,7 @@ struct LitScene {
   std::function<Rgb(const scene::SurfacePoint&)> irradiance_at;  ///< called by many threads
 };
 
-/// How many rays look around a point.
+/// Numbers of rays that look around a point.
 struct AroundParams {
   int samples = 512;        ///< rays per point towards surfaces and sky
   int direct_samples = 16;  ///< shadow rays per point and direction towards area lights
@@ -58,8 +57,8 @@ Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions
 /// most), far less than what nine functions leave out. 24 directions: 1.2 % and 5.4 %.
 inline constexpr uint32_t kProbeNormals = 48;
 
-/// What arrives at places from surfaces and from the soft light of the surroundings: all of E that
-/// direct_light() with no sky_samples leaves.
+/// Light that arrives at places from surfaces and from the soft light of the surroundings: all of E
+/// that direct_light() with no sky_samples leaves.
 struct Arriving {
   std::vector<Rgb> reflected, sky;  ///< E per place [W/m^2]
   std::vector<float> backs;         ///< share of the rays that meet the back of a one-sided surface
@@ -73,7 +72,7 @@ Result<Arriving> arriving_light(const LitScene& lit, std::span<const Vec3> posit
                                 std::span<const Vec3> normals, const AroundParams& params,
                                 Progress& progress);
 
-/// How E changes when a surface's normal is bent: E(m) = E + (m - n) . V, V a vector per channel.
+/// Change of E when a surface's normal is bent: E(m) = E + (m - n) . V, V a vector per channel.
 struct Bent {
   std::array<Rgb, 3> v;  ///< its x, y and z, in the world
 };

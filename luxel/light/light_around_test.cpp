@@ -63,7 +63,7 @@ TEST(LightProbes, BesideALamp) {
   const auto y = sh2_basis(towards);
   for (size_t k = 0; k < kSh2; ++k) {
     const float expected = 10 * y[k] * (k == 0 ? kPi : k < 4 ? 2 * kPi / 3 : kPi / 4);
-    // What the lobe has in higher bands, 0.07 of it, leaks in by the spacing of 48 directions.
+    // The lobe's higher bands, 0.07 of it, leak in because of the spacing of 48 directions.
     EXPECT_NEAR(p.irradiance[k].x, expected, 0.25f) << k;
     EXPECT_NEAR(p.irradiance[k].z, 3 * p.irradiance[k].x, 1e-4f);
   }

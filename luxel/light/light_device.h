@@ -1,5 +1,5 @@
-// What a graphics device does of direct light; luxel/light/device/ has one. The rest of the room
-// knows no graphics.
+// Interface to a graphics device that computes direct light; luxel/light/device/ has it. The rest
+// of the room knows no graphics.
 #pragma once
 
 #include <cstdint>

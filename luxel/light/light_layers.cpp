@@ -20,7 +20,7 @@ bool is_safe(char c) {
          c == '-';
 }
 
-/// What files can be called on every system.
+/// The name in a form that files can have on every system: cut, and with '_' for other characters.
 std::string safe_name(std::string_view name) {
   std::string out(name.substr(0, kLongestName));
   for (char& c : out)

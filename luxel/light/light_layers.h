@@ -1,4 +1,4 @@
-// What light belongs to which layer of a bake: each layer becomes a lightmap of its own.
+// Division of light into the layers of a bake: each layer becomes a lightmap of its own.
 //
 // Light adds up: E = sum over layers of E_l, where E_l is what the scene would get from the lights
 // of that layer alone. docs/method/layers.md

@@ -14,7 +14,7 @@ struct LightNode {
   Vec3 centre;
   float radius_m = 0;  ///< of the sphere about the centre that holds all of it
   float power = 0;  ///< triangles: sum of luminance(radiance) * area * sides; lights: of intensity
-  /// How the power is spread over directions d: even + max(0, d . facing), at least about that.
+  /// Spread of the power over directions d, at least about even + max(0, d . facing).
   Vec3 facing{};
   float even = 1;
   /// No light leaves by an angle of more than `angle` to the axis, nor arrives beyond the reach.
@@ -25,7 +25,7 @@ struct LightNode {
   uint32_t right_child = 0;       ///< the left child follows its parent; 0: a leaf of one light
 };
 
-/// What a tree is made of: one light, with its place in the caller's list.
+/// One light of a tree, with its place in the caller's list.
 struct LightLeaf {
   Box3 bounds;
   Vec3 place;  ///< by which groups are formed

@@ -34,7 +34,7 @@ void light_receivers(const DirectScene& lit, const LightAsked& asked, PointBuffe
 
 namespace {
 
-/// What a texel has between WorkOnPoints::begin() and end(), while the device lights its points.
+/// Points of a texel between WorkOnPoints::begin() and end(), while the device lights them.
 struct WaitingPoints {
   std::vector<Receiver> receivers;
   std::vector<uint8_t> on_side;

@@ -21,7 +21,7 @@ constexpr int kShadowTimes = 4;
 /// Any number: it sets these random numbers apart from those of the light.
 constexpr uint64_t kPointAnswerSeed = 0x901e7;
 
-/// What a ray brings.
+/// Radiance that a ray brings.
 Rgb radiance_of(const PointCheck& check, const trace::Ray& ray, const trace::Hit& hit) {
   const scene::Scene& scene = check.in.scene;
   if (!hit.found()) return soft_radiance(scene, check.in.lights.around, ray.direction);

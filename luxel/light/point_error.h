@@ -1,4 +1,4 @@
-// How far the light of points is off that a solver reads from a mesh of its own.
+// Error of the light at points that a solver reads from a mesh of its own.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,10 @@
 
 namespace luxel::light {
 
-/// What is checked, and against what.
+/// A solver's light to check, and the scene that it is checked in.
 struct PointCheck {
   const TexelScene& in;
-  /// What the solver says that the surface that a ray meets sends, its emission aside [W/m^2].
+  /// The solver's radiosity of the surface that a ray meets, without its emission [W/m^2].
   std::function<Rgb(const trace::Hit&)> radiosity;
   std::span<const float> noise;  ///< per element, what is believed of its luminance's variance
   SupersampleParams direct;      ///< as the light's

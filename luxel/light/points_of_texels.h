@@ -17,7 +17,7 @@ namespace luxel::light {
 /// For one of many points, and for the sample of a texel, as gather asks.
 inline constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
 
-/// What all points share.
+/// The scene of all points.
 struct PointScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -25,7 +25,7 @@ struct PointScene {
 
 inline PointScene point_scene(const TexelScene& in) { return {in.scene, in.tracer}; }
 
-/// Whether a point lies inside a solid; of each place the same answer in every bake.
+/// True where a point lies inside a solid. A place gets the same answer in every bake.
 inline bool is_enclosed(const PointScene& at, const Receiver& r, int rays = kEnclosureRays) {
   return transport::is_enclosed(at.scene, at.tracer, r.position, r.normal, rays);
 }
@@ -49,7 +49,7 @@ inline uint64_t find_on_side(const TexelScene& in, size_t texel,
                                  on_side);
 }
 
-/// Whether the sample of a texel has the backs of some surfaces before it.
+/// The sample of a texel has the backs of some surfaces before it.
 inline bool sees_backs(const PointScene& at, const Receiver& own) {
   return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.position,
                                                           own.normal, kEnclosureRays)) > 0;

@@ -48,7 +48,7 @@ struct Interval {
   bool empty() const { return last < first - kParameterRounding * std::max(1.0, first); }
 };
 
-/// How fast the sides of a box move [per t].
+/// Speeds of the sides of a box [per t].
 struct Sides {
   std::array<double, 3> lower{}, upper{};
 };

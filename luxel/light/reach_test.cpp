@@ -13,7 +13,7 @@
 namespace luxel::light {
 namespace {
 
-/// Whether origin + t d, 0 <= t <= last, meets the box: slabs, in double.
+/// The ray origin + t d, 0 <= t <= last, meets the box: slabs, in double.
 bool ray_meets(Vec3 origin, Vec3 d, double last, const Box3& box) {
   double first = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,8 +52,9 @@ bool overlap(const Box3& a, const Box3& b) {
   return lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z;
 }
 
-/// Whether the box that moves from `from` to `to` is seen to overlap `box`, grown by what looks can
-/// miss: how far a side moves from one to the next, where it moves by less than 4 m in all.
+/// True: the box that moves from `from` to `to` overlaps `box` at one of many t. `box` is grown by
+/// a side's way between two looks, so that nothing is missed where sides move by less than 4 m in
+/// all.
 bool seen_to_overlap(const Box3& from, const Box3& to, const Box3& box) {
   constexpr int kLooks = 1000;
   const Box3 wide = grown(box, 4.0f / kLooks);

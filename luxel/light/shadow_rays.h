@@ -20,7 +20,7 @@ inline constexpr size_t kMaxAllTriangles = 32;
 /// Up to so many punctual lights each one gets its shadow ray; of more, so many are drawn.
 inline constexpr size_t kMaxAllPunctual = 64;
 
-/// What shadow rays are traced through and towards.
+/// The scene that shadow rays cross, and the lights that they aim at.
 struct DirectScene {
   const scene::Scene& scene;
   const Lights& lights;
@@ -45,7 +45,7 @@ struct ShadowRay {
   bool second_half = false;  ///< of the rays planned at its source
 };
 
-/// What shines: a triangle light, a punctual light, or the surroundings.
+/// A source of light: a triangle light, a punctual light, or the surroundings.
 struct LightId {
   enum class Kind : uint8_t { surroundings, triangle, punctual };
   Kind kind = Kind::surroundings;

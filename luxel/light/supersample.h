@@ -30,7 +30,7 @@ struct Supersampled {
   uint64_t rays = 0;
 };
 
-/// How finely each element's direct light was looked at.
+/// Sampling levels of each element's direct light.
 struct DirectLevels {
   std::vector<uint8_t> level;     ///< per element: shadow rays, or points, times 4 to this power
   std::vector<uint8_t> averaged;  ///< per element: 1 where it is a mean over points of its texel

@@ -244,8 +244,8 @@ TEST(Supersample, LookingForFlecksTakesFewRaysBesideALamp) {
   EXPECT_EQ(rays(true) - rays(false), 17 * kAll + 8 * 8 * kBorder);
 }
 
-// What the estimate is for: on average over texels it is the squared error, here within a factor of
-// three, for it takes neighbouring points for the two halves of a stratum.
+// Averaged over texels, the estimated variance is the squared error: here within a factor of three,
+// since it takes neighbouring points for the two halves of a stratum.
 TEST(Supersample, TheVarianceIsThatOfTheMean) {
   const Lit lit = light(half_shaded_floor(), 64);
   const double rms = errors_of(lit, lit.after.irradiance).rms;

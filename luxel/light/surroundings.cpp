@@ -44,7 +44,7 @@ uint64_t morton(uint32_t x, uint32_t y) {
   return code;
 }
 
-/// What of a pixel's light lies below the limit, as a share.
+/// Share of a pixel's light that lies below the limit.
 float soft_share(float luminance_of_pixel, float limit) {
   return luminance_of_pixel > limit ? limit / luminance_of_pixel : 1.0f;
 }
@@ -129,7 +129,7 @@ BrightTexelSample sample_bright_texels(const scene::Scene& scene, const Surround
   const double power = s.below.back();
   const double at = double(u.x) * power;
   const size_t k = bright_texel_at(s, double(u.x));
-  // What is left of u.x within the pixel's share is uniform again.
+  // The rest of u.x within the pixel's share is uniform again.
   const double within = std::clamp((at - s.below[k]) / (s.below[k + 1] - s.below[k]), 0.0, 1.0);
   const uint32_t pixel = s.bright_texels[k];
   const int x = int(pixel) % map.width, y = int(pixel) / map.width;

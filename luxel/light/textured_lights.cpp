@@ -41,7 +41,7 @@ Corners part_of(const Corners& whole, int levels, size_t path) {
   return c;
 }
 
-/// How many texels of a texture the triangle's longest side spans.
+/// Texels of a texture along the triangle's longest side.
 float texels_across(const scene::Scene& scene, const TriangleLight& light,
                     const scene::TextureRef& ref) {
   if (ref.texture == scene::kNone) return 0;

@@ -35,7 +35,7 @@ scene::Scene lamp_with(const Spot& spot) {
   return scene;
 }
 
-/// What the same piece of lamp brings to a point of the floor, as geometry.
+/// Light of the same piece of lamp at a point of the floor, in closed form.
 double exact_at(const Spot& spot, Vec3 p) {
   const auto edge = [&](int texel, float at) {
     return double(texel) / spot.side - 0.5 - double(at);

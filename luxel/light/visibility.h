@@ -1,4 +1,4 @@
-// What texels see: of lights, and of the open around them. No radiometry.
+// Shares of lights and of the open surroundings that texels see. No radiometry.
 #pragma once
 
 #include <cstdint>

@@ -27,12 +27,11 @@ struct TexelGeometry {
   std::span<const uint32_t> region = {};
 };
 
-/// How far the filter looks, and what it holds to be the same light.
+/// The reach of the filter, and the differences up to which it takes light for the same.
 struct DenoiseParams {
   float radius = 9;                    ///< largest distance of a neighbour, in texels
   float max_normal_angle_rad = 0.35f;  ///< neighbours that face farther apart share no light
-  /// How many standard deviations of their difference two texels may lie apart and still count as
-  /// the same light.
+  /// Two texels count as the same light up to so many standard deviations of their difference.
   float max_deviations = 2.5f;
 };
 

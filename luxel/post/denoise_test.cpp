@@ -225,7 +225,7 @@ TEST(Denoise, FaintFirefliesAreSharedOut) {
   for (size_t i = 0; i < sheet.size(); ++i)
     if (is_firefly(i)) sheet.values[i] = bright(i);
   sheet.filter();
-  // What windows leave of the noise is 0.1 / 13, 0.03 at borders; each firefly has 0.8 to share.
+  // Windows leave a noise of 0.1 / 13, 0.03 at borders; each firefly has 0.8 to share.
   for (size_t i = 0; i < sheet.size(); ++i) EXPECT_NEAR(sheet.values[i].y, 2, 0.15) << i;
 }
 

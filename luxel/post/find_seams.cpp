@@ -39,7 +39,7 @@ std::vector<HalfEdge> half_edges(const scene::Mesh& mesh) {
 
 Barycentric corner(uint32_t c) { return {c == 1 ? 1.0f : 0.0f, c == 2 ? 1.0f : 0.0f}; }
 
-/// Whether light may pass smoothly over the edge: the shading normals agree at both ends.
+/// Light may pass smoothly over the edge: the shading normals agree at both ends.
 bool is_smooth(const scene::Scene& scene, uint32_t instance, const HalfEdge& a, const HalfEdge& b,
                float min_cosine) {
   const auto agree = [&](uint32_t corner_a, uint32_t corner_b) {

@@ -61,7 +61,7 @@ Plane fit(const Moments& m) {
   return plane;
 }
 
-/// How a texel looks at those around it.
+/// A texel that looks at those around it.
 struct Looker {
   Around around;
   Plane own;
@@ -80,8 +80,8 @@ Looker looker_of(const Neighbourhood& n, const NoiseLevel& noise, const GrowRoun
   return {around(n.place[i], round.radius, n.min_cosine), own, {per(c.x), per(c.y), per(c.z)}};
 }
 
-/// How well a neighbour's light agrees with the plane around a texel, 0 .. 1: the squared
-/// difference over its variance, in the channel where it is largest.
+/// The agreement of a neighbour's light with the plane around a texel, 0 .. 1: by the squared
+/// difference over its variance, in the channel where that is largest.
 float agreement(const Looker& self, const Shown& other, const Neighbour& at) {
   const Plane& own = self.own;
   const Rgb d = own.value + own.slope_u * at.u + own.slope_v * at.v - other.estimate;

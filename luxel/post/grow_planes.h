@@ -20,7 +20,7 @@ struct Plane {
   float slope_variance = 0;  ///< mean of both slopes'
 };
 
-/// What a texel shows to its neighbours, side by side in memory.
+/// Light that a texel shows to its neighbours, side by side in memory.
 struct Shown {
   Rgb estimate;
   float estimate_variance = 0;
@@ -36,7 +36,7 @@ struct Planes {
   /// Per texel. Members of a team know slopes of their own texels alone, which nobody else asks
   /// for.
   std::vector<Plane> planes;
-  std::vector<Shown> shown;  ///< what the others see of each: a buffer
+  std::vector<Shown> shown;  ///< each as the others see it: a buffer
   /// The squares of the atlas (texel_tile.h) whose texels are this member's, or all; none before
   /// the first round.
   std::optional<std::vector<uint32_t>> own_squares{};

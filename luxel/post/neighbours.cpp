@@ -74,8 +74,8 @@ Grid make_grid(const std::vector<SurfaceSample>& places, float cell_m) {
   return grid;
 }
 
-/// Whether something of a texel's window is missing: only there may its surface go on elsewhere.
-/// Every other texel is looked at, for charts lie two apart. `self`: the texel in `cell`.
+/// True: a part of the texel's window is missing. Only there may its surface go on elsewhere. The
+/// test looks at every other texel, for charts lie two apart. `self`: the texel in `cell`.
 LUXEL_VECTOR_CLONES
 bool is_near_a_border(const TexelTile& tile, const Around& self, size_t cell, int radius) {
   const int across = 2 * radius + 1;

@@ -62,7 +62,7 @@ float median(std::span<const float> values) {
   return 0;
 }
 
-/// What a window shows.
+/// Stated variances, light and differences of a window's texels.
 struct Window {
   float stated = 0, weight = 0;
   Rgb light{};

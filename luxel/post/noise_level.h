@@ -1,4 +1,4 @@
-// How noisy texels are, by what their solver says and by what they show.
+// The noise of texels, by their solver's statements and by the differences that they show.
 #pragma once
 
 #include "luxel/post/neighbours.h"

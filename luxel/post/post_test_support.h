@@ -1,4 +1,4 @@
-// What the tests of this room share: a sheet cut into two charts.
+// Shared by the tests of this room: a sheet cut into two charts.
 #pragma once
 
 #include <cmath>

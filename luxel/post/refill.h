@@ -10,7 +10,7 @@
 
 namespace luxel::post {
 
-/// Whether something stands between two texels of one chart, given by their indices.
+/// True where something stands between two texels of one chart, given by their indices.
 using Parted = std::function<bool(uint32_t, uint32_t)>;
 
 /// Where an object stands on a floor, texels of the floor half under it lie inside the object and

@@ -25,8 +25,8 @@ struct Seam {
 std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
                              float max_normal_angle_rad = 0.1f);
 
-/// What texels have to do with each other at seams. Else light would go from one side of a wall to
-/// the other. Spans have one entry per texel, or none.
+/// Limits on the texels that seams join. Without them light would go from one side of a wall to the
+/// other. Spans have one entry per texel, or none.
 struct SeamTexels {
   /// 1 where its light means nothing, inside of solids: no look-up reads it, and it stays as it is.
   /// Empty: no texel.
@@ -36,9 +36,9 @@ struct SeamTexels {
   std::span<const uint32_t> region = {};
 };
 
-/// How stitch_seams() weighs and iterates.
+/// Weights, iterations and texels of stitch_seams().
 struct SeamParams {
-  float keep_weight = 0.1f;  ///< how strongly a texel holds on to its own value
+  float keep_weight = 0.1f;  ///< the pull of a texel towards its own value
   int max_iterations = 200;  ///< of the conjugate gradient
   SeamTexels texels = {};
 };
@@ -74,7 +74,7 @@ Status stitch_layers(const atlas::TexelMap& map, std::span<const Seam> seams,
                      const SeamParams& params, std::span<const Rgb> whole,
                      std::span<std::vector<Rgb>> layers, Progress& progress);
 
-/// How far the two sides of seams lie apart, over all points of all seams.
+/// The difference between the two sides of seams, over all points of all seams.
 struct SeamResidual {
   /// Root mean square of the difference, all channels, over the mean value of all points.
   double rms_over_mean = 0;

@@ -49,7 +49,7 @@ struct SeamPoint {
   double half_texels = 0;  ///< the length of seam that it stands for
 };
 
-/// Whether both look-ups read texels of one region.
+/// Both look-ups read texels of one region.
 bool is_in_one_region(const SeamPoint& point, std::span<const uint32_t> region) {
   if (region.empty()) return true;
   for (const Lookup* side : {&point.a, &point.b})

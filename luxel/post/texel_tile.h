@@ -28,7 +28,7 @@ struct TexelTile {
   size_t cell(int x, int y) const { return size_t(y - first_y) * stride + size_t(x - first_x); }
 };
 
-/// How many tiles a row of the atlas has.
+/// Tiles in a row of the atlas.
 inline int tiles_across(const Neighbourhood& n) {
   return (n.map->resolution + kTileSide - 1) / kTileSide;
 }

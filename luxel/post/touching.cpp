@@ -64,10 +64,10 @@ void for_cells(const Line& line, int size_class, float tolerance, const Visit& v
 struct Contact {
   uint32_t a = 0, b = 0;  ///< a < b
   float a0 = 0, a1 = 0;   ///< on a, metres from its start; a0 < a1
-  float b0 = 0, b1 = 0;   ///< the same places on b
+  float b0 = 0, b1 = 0;   ///< these places on b
 };
 
-/// Whether the edges coincide over some length.
+/// The edges coincide over some length; `contact` gets the stretch.
 bool touch(const std::vector<Line>& lines, uint32_t i, uint32_t j, float scene_tolerance,
            Contact& contact) {
   const Line &a = lines[i], &b = lines[j];
@@ -147,7 +147,7 @@ scene::SurfacePoint place_on(const OpenEdge& edge, const Line& line, float t) {
   return {edge.instance, edge.triangle, {weight[1], weight[2]}};
 }
 
-/// Whether one surface goes on where the other ends.
+/// One surface goes on where the other ends.
 bool goes_on(const scene::Scene& scene, std::span<const OpenEdge> edges,
              const std::vector<Line>& lines, const Contact& c, float min_cosine) {
   if (dot(lines[c.a].inward, lines[c.b].inward) >= 0) return false;

@@ -323,7 +323,7 @@ TEST(Lights, ManyLampsAddUp) {
   expect_unbiased(solve(scene, points, kDirect), exact);
 }
 
-// What a rectangle does not hide of a uniform sky.
+// A uniform sky of radiance 2 brings 2 pi, less the light of the part that a rectangle hides.
 TEST(Lights, TheBackgroundIsSeenPastSurfaces) {
   scene::Scene scene;
   scene::add_material(scene, "roof", {});
@@ -377,7 +377,7 @@ TEST(Lights, GroundUnderAMapReflectsIt) {
   scene.environment = half_sky(1);
   Points points;
   points.add({0, 1, 0}, {0, -1, 0});
-  // What is beyond the plane's edge is a 4000th of the hemisphere, squared.
+  // At most (1 / 4000)^2 of the hemisphere, by the cosine, lies beyond the plane's edge.
   expect_unbiased(solve(scene, points, {.samples = 2000}), {kPiDouble * 0.5}, 1e-4);
 }
 

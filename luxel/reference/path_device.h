@@ -1,5 +1,5 @@
-// What a graphics device does of path tracing; luxel/reference/device/ has one. The path tracer
-// itself knows no graphics.
+// Path tracing on a graphics device; luxel/reference/device/ implements it. The path tracer itself
+// knows no graphics.
 #pragma once
 
 #include "luxel/reference/path_tracer.h"

@@ -19,7 +19,7 @@
 
 namespace luxel::reference {
 
-/// How many paths there are, and how long.
+/// The number of paths, and their length.
 struct PathParams {
   int samples = 256;  ///< paths per receiver or pixel; at least 1
   int bounces = -1;   ///< reflections to count; < 0: all
@@ -79,9 +79,9 @@ struct Picture {
   double relative_error = 0;  ///< as in TexelPaths
 };
 
-/// What a camera sees, uniformly over each pixel's square. Back faces of one-sided surfaces are
-/// invisible to the camera, as in display::draw; for every other ray they are black. Errors:
-/// cancelled.
+/// The picture of a camera, sampled uniformly over each pixel's square. Back faces of one-sided
+/// surfaces are invisible to the camera, as in display::draw; for every other ray they are black.
+/// Errors: cancelled.
 Result<Picture> radiance_by_paths(const scene::Scene& scene, const trace::RayTracer& tracer,
                                   const scene::Camera& camera, int width, int height,
                                   const PathParams& params, Progress& progress);

@@ -86,7 +86,7 @@ void aim_at_sky(const TracedScene& world, Path& path, uint32_t index, PathBuffer
   work.shadow_rays.push_back({path.at.position, 0, sky.direction, INFINITY});
 }
 
-/// What a random ray sees that has left the scene.
+/// Adds the sky's light along a random ray that has left the scene.
 void add_found_sky(const TracedScene& world, Vec3 d, Path& path) {
   Rgb light = world.scene.background;
   if (world.sky.power() > 0) {

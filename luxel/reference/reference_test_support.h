@@ -1,5 +1,5 @@
-// What the tests of the path tracer share: points without an atlas, and the comparison with what is
-// known.
+// Shared by the tests of the path tracer: points without an atlas, and the comparison with known
+// light.
 #pragma once
 
 #include <gtest/gtest.h>

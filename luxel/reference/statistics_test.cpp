@@ -1,5 +1,5 @@
-// What the path tracer says about itself: the rate, the standard error, the same bits; and that its
-// two ways to find emitters agree.
+// The path tracer's statements about itself: the rate, the standard error, the same bits; and the
+// agreement of its two ways to find emitters.
 #include <gtest/gtest.h>
 
 #include <bit>

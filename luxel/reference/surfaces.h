@@ -1,4 +1,4 @@
-// What paths meet: triangles with their front normals.
+// The surfaces that paths meet: triangles with their front normals.
 #pragma once
 
 #include <cstdint>

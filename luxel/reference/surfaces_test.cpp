@@ -1,5 +1,4 @@
-// What happens at a hit: the two sides of a surface, shading normals, alpha, and what a camera
-// sees.
+// Hits: the two sides of a surface, shading normals, alpha, and the view of a camera.
 #include "luxel/reference/surfaces.h"
 
 #include <gtest/gtest.h>

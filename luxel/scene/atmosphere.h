@@ -37,7 +37,7 @@ double rayleigh_phase(double cosine);
 /// Cornette's and Shanks' phase function [Hillaire20, section 4].
 double aerosol_phase(double g, double cosine);
 
-/// What is looked up many times.
+/// Tables of values that are looked up many times.
 struct AirTables {
   Atmosphere air;
   int width = 0, height = 0;         ///< of `transmittance`
@@ -73,8 +73,8 @@ struct AirRay {
 /// top or the ground.
 AirRay sky_ray(const AirTables& t, double eye_km, double cosine, int steps);
 
-/// What arrives along a ray, without the phase functions of light that is scattered once, which
-/// change fast around the sun: the rest is smooth in the angle between ray and sun.
+/// Light that arrives along a ray. Light that is scattered once comes without its phase functions,
+/// which change fast around the sun: the rest is smooth in the angle between ray and sun.
 struct SkyLight {
   DVec3 by_air, by_haze;  ///< scattered once
   DVec3 again;            ///< more often

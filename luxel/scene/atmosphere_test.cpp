@@ -16,7 +16,7 @@ double over_sphere(const F& f) {
   return sum * 2 / kSteps * 2 * kPiDouble;
 }
 
-// What is scattered goes somewhere.
+// Scattered light goes somewhere: phase functions lose none.
 TEST(Atmosphere, PhaseFunctionsIntegrateToOne) {
   EXPECT_NEAR(over_sphere(rayleigh_phase), 1, 1e-6);
   for (const double g : {0.0, 0.5, 0.8})

@@ -1,4 +1,4 @@
-// How bright the light of a scene may be, and which light is too bright.
+// The largest brightness of a scene's light, and errors that name the light beyond it.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ inline constexpr float kMostIntensity = 1e30f;
 /// reflectance of 0.99 multiplies light by up to 100) and for several lamps.
 inline constexpr float kMostIrradiance = 1e18f;
 
-/// Whether light can be summed and squared: finite, and at most kMostIrradiance.
+/// Light that can be summed and squared: finite, and at most kMostIrradiance.
 inline bool is_held_light(Rgb c) { return is_finite(c) && max_component(c) <= kMostIrradiance; }
 
 /// The largest I of a light [W/sr], with that of its profile; for directional lights E [W/m^2].

@@ -1,4 +1,4 @@
-// What may shine in a scene, and what is said of more.
+// The light that may shine in a scene, and the errors that tell of more.
 #include "luxel/scene/brightness.h"
 
 #include <fmt/format.h>

@@ -39,7 +39,7 @@ using Textures = std::vector<Channels>;
 constexpr std::array<size_t, 3> kRgb{0, 1, 2};
 constexpr std::array<size_t, 1> kRed{0}, kBlue{2}, kAlpha{3};
 
-/// What a material finds in some channels of a texture.
+/// Adds some channels of a texture, as a material looks them up.
 void add_texture(Digest& d, const Textures& textures, const TextureRef& ref,
                  std::span<const size_t> channels) {
   d.add(ref.texture != kNone);
@@ -50,9 +50,9 @@ void add_texture(Digest& d, const Textures& textures, const TextureRef& ref,
 
 constexpr uint64_t kDoubleSided = 1, kScatters = 2;
 
-/// What each member counts for: passage_at and reflects_from_behind, reflectance_at and
-/// diffuse_transmittance_at, emission_at. All members are named, so that a new one does not compile
-/// until somebody has thought of it.
+/// Digests of a material, by the functions that look members up: passage_at and
+/// reflects_from_behind, reflectance_at and diffuse_transmittance_at, emission_at. All members are
+/// named, so that a new one does not compile until somebody has thought of it.
 SceneState::Material state_of(const Material& material, const Textures& textures) {
   // By names, so that a new member of Material stops the compiler here.
   const auto& [name, base_color, alpha, metallic, roughness, base_color_texture, metallic_texture,
@@ -61,13 +61,13 @@ SceneState::Material state_of(const Material& material, const Textures& textures
                diffuse_transmission_texture, diffuse_transmission_color_texture, double_sided,
                unlit, specular, sharpness] = material;
   const bool scatters = diffuse_transmission > 0;
-  // What several of the parts below share.
+  // Several of the parts below share these.
   Digest metal, base;
   metal.add(metallic);
   if (metallic > 0) add_texture(metal, textures, metallic_texture, kBlue);
   add(base, base_color), add_texture(base, textures, base_color_texture, kRgb);
 
-  // What decides which rays get through.
+  // The shape decides which rays get through.
   Digest shape;
   shape.add(alpha_mode), shape.add(transmission > 0);
   if (alpha_mode != AlphaMode::opaque) {
@@ -80,7 +80,7 @@ SceneState::Material state_of(const Material& material, const Textures& textures
   }
   if (tints_light(material)) shape.add(base.value());
 
-  // What reflects, and what shines.
+  // The colour reflects, and the emission shines.
   Digest colour, emitted;
   colour.add(scatters), colour.add(base.value()), colour.add(metal.value());
   if (scatters) {
@@ -186,8 +186,9 @@ std::string beyond_following(const SceneState& before, const SceneState& now) {
   return {};
 }
 
-/// What light is multiplied by. Nothing where a channel was dark and is not, or where the light is
-/// spread otherwise than before; what was black and is black has not changed, however it is shaped.
+/// The factor on light, per channel. Nothing where a channel was dark and is not, or where the
+/// light is spread otherwise than before. Black that stays black has not changed, whatever its
+/// shape.
 std::optional<Rgb> scale_of(Rgb before, Rgb now, bool same_shape) {
   if (before == Rgb{} && now == Rgb{}) return kAsItWas;
   if (!same_shape) return std::nullopt;

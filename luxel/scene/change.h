@@ -1,5 +1,5 @@
-// What has changed in a scene, as a second bake asks: which rays can meet something else than
-// before, and which light is only brighter, darker or of another colour.
+// Changes of a scene, as a second bake asks for them: rays that can meet something else than
+// before, and light that is only brighter, darker or of another colour.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace luxel::scene {
 
-/// What one needs to know of a scene to tell later what has changed: digests, and what a change is
-/// measured against. Names are there to be shown and compared by nobody.
+/// Facts about a scene that tell later what has changed: digests, and the values that a change is
+/// measured against. Names are there to be shown; nothing compares them.
 struct SceneState {
   struct Material {
     std::string name;
@@ -49,8 +49,8 @@ struct SceneState {
 };
 SceneState state_of(const Scene& scene);
 
-/// What is different. Cameras, names, and what only pictures show (normal maps, highlights, unlit
-/// materials) are no difference.
+/// Differences between two states of a scene. Cameras, names, and features that only pictures show
+/// (normal maps, highlights, unlit materials) are no difference.
 struct SceneChange {
   /// Not empty: something changed that cannot be followed up, in words ("mesh 'chair' has changed",
   /// "3 lights there, 4 here"). All is different then, and nothing of what follows is filled in.
@@ -65,7 +65,7 @@ struct SceneChange {
   std::vector<std::optional<Rgb>> light_scale, emission_scale;
   bool surroundings = false;       ///< background or environment differ
   std::vector<uint32_t> reshaped;  ///< materials whose `shape` differs
-  /// Whether anything differs at all.
+  /// True: something differs.
   bool any() const;
 };
 /// `now` is fresh from state_of.

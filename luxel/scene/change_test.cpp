@@ -94,7 +94,7 @@ TEST(SceneChange, IsNotInNamesNorInWhatOnlyPicturesShow) {
                }).any());
 }
 
-// What is looked up counts, not what it would be if something else were the case.
+// Only values that are looked up count, not those that another setting would bring into use.
 TEST(SceneChange, IsNotInWhatIsNotLookedUp) {
   EXPECT_FALSE(changed_in(paint, [](Material& m) {
                  m.alpha = 0.2f, m.alpha_cutoff = 0.1f;     // opaque
@@ -115,7 +115,7 @@ TEST(SceneChange, IsNotInWhatIsNotLookedUp) {
   EXPECT_FALSE(changed_by([](Scene& s) { s.environment.rotation_rad = 1; },
                           [](Scene& s) { s.environment = {}; })
                    .any());
-  // What was black is black.
+  // Black stays black.
   EXPECT_FALSE(changed_in(paint, [](Material& m) { m.emission_texture.texture = 1; }).any());
   EXPECT_FALSE(changed_by([](Scene& s) { s.lights[1].position.x = 3; }).any());
 }

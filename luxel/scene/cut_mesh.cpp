@@ -34,7 +34,7 @@ class CutEdges {
   }
 
   bool empty() const { return at_.empty(); }
-  /// Whether a triangle may have cut edges: those have two ends in the box around all of them.
+  /// False: the triangle has no cut edges. Those have two ends in the box around all of them.
   bool may_cut(const Corners& c) const {
     const auto inside = [&](uint32_t v) {
       const Vec3 p = mesh_.positions[v];

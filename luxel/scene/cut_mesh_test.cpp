@@ -18,7 +18,7 @@ double area_of(const Mesh& mesh) {
   return sum;
 }
 
-/// Whether every edge of a closed mesh has exactly one triangle on each side, by position.
+/// True: every edge of the mesh has exactly one triangle on each side, by position.
 bool is_closed(const Mesh& mesh) {
   using Point = std::array<float, 3>;
   std::map<std::pair<Point, Point>, int> edges;
@@ -108,7 +108,7 @@ TEST(CutMesh, AttributesFollow) {
   }
 }
 
-/// What lies on the plane already is not cut: a cut twice is a cut once.
+/// A cut twice is a cut once: the first leaves no triangle on both sides of the plane.
 TEST(CutMesh, CutsOnce) {
   Mesh ball = sphere("ball", 1, 16, 9, 0);
   const Plane cut = plane({1, 2, 0.3f}, 0.2f);

@@ -110,7 +110,7 @@ void append(std::string_view kind, const std::vector<T>& things, std::vector<Ite
   for (const T& thing : things) out.push_back({std::string(kind), thing.name, digest(thing)});
 }
 
-/// What is called "the ..." and is there once.
+/// Kinds with one item in a scene. Messages call it "the ...".
 constexpr std::array<std::string_view, 2> kSingle{"background", "environment"};
 
 std::vector<const ItemDigest*> of_kind(std::span<const ItemDigest> items, std::string_view kind) {

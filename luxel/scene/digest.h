@@ -1,4 +1,4 @@
-// What a scene is made of, as digests: whether another scene is the same, and what differs.
+// Digests of a scene's contents. They tell that another scene is the same, or what differs.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct ItemDigest {
 /// pictures depend on: of names none, of a texture its pixels, not the file that they came in.
 std::vector<ItemDigest> digests_of(const Scene& scene);
 
-/// What is different now, in words: "mesh 'chair' has changed"; the first difference, by kinds.
-/// Empty where there is none, but for names.
+/// The first difference, by kinds, in words: "mesh 'chair' has changed". Empty where there is none,
+/// but for names.
 std::string difference(std::span<const ItemDigest> before, std::span<const ItemDigest> now);
 
 }  // namespace luxel::scene

@@ -38,7 +38,7 @@ std::string digests_changed_by(const std::function<void(Scene&)>& edit) {
 
 TEST(SceneDigest, OfTheSameSceneIsTheSame) {
   EXPECT_EQ(digests_changed_by([](Scene&) {}), "");
-  // What a file calls its things changes no light, nor does how a picture is compressed.
+  // Names in a file change no light, nor does the compression of a picture.
   EXPECT_EQ(digests_changed_by([](Scene& s) {
               s.name = "other", s.meshes[0].name = "stool", s.lights[0].name = "L";
               s.textures[0].encoded.resize(7), s.textures[0].mime_type = "image/png";

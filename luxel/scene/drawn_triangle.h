@@ -11,7 +11,7 @@ struct DrawnTriangle {
   uint32_t instance = 0, triangle = 0;
 };
 
-/// What has `number` in the numbering of first_triangles(), which `first` is.
+/// The triangle of a `number` that counts as in first_triangles(), whose result is `first`.
 inline DrawnTriangle drawn_triangle(std::span<const uint32_t> first, uint32_t number) {
   const auto after = std::upper_bound(first.begin(), first.end(), number);
   const auto instance = uint32_t(after - first.begin() - 1);

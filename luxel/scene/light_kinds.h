@@ -1,5 +1,5 @@
-// What can be asked of a kind of punctual light: one switch per question and none with a default,
-// so that the compiler (-Werror=switch) names each question that a new kind has to answer.
+// Questions about a kind of punctual light: one switch per question and none with a default, so
+// that the compiler (-Werror=switch) names each question that a new kind has to answer.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ constexpr std::optional<LightKind> kind_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// Whether `position` counts: the light falls off with the distance from it, up to `range_m`.
-/// Without one the light comes from infinitely far away and is the same everywhere.
+/// `position` counts: the light falls off with the distance from it, up to `range_m`. A light
+/// without one comes from infinitely far away and is the same everywhere.
 constexpr bool has_position(LightKind kind) {
   switch (kind) {
     case LightKind::point:
@@ -56,7 +56,7 @@ constexpr bool has_position(LightKind kind) {
   return false;
 }
 
-/// Whether `direction` counts, even without a profile.
+/// `direction` counts, even without a profile.
 constexpr bool has_direction(LightKind kind) {
   switch (kind) {
     case LightKind::point:
@@ -68,7 +68,7 @@ constexpr bool has_direction(LightKind kind) {
   return false;
 }
 
-/// Whether the light stays within `outer_cone_rad` of its direction.
+/// The light stays within `outer_cone_rad` of its direction.
 constexpr bool has_cone(LightKind kind) {
   switch (kind) {
     case LightKind::point:
@@ -80,7 +80,7 @@ constexpr bool has_cone(LightKind kind) {
   return false;
 }
 
-/// Whether candela of a LightProfile can multiply the intensity.
+/// Candela of a LightProfile can multiply the intensity.
 constexpr bool can_have_profile(LightKind kind) {
   switch (kind) {
     case LightKind::point:
@@ -92,7 +92,7 @@ constexpr bool can_have_profile(LightKind kind) {
   return false;
 }
 
-/// Whether a light is seen as a disc of `angular_radius_rad`, so that its shadows have soft edges.
+/// The light is seen as a disc of `angular_radius_rad`, so that its shadows have soft edges.
 constexpr bool has_disc(const PunctualLight& light) {
   switch (light.kind) {
     case LightKind::point:

@@ -1,4 +1,4 @@
-// How strongly a light shines in which direction: measured far-field photometry.
+// The distribution of a light's intensity over directions: measured far-field photometry.
 #pragma once
 
 #include <cstddef>

@@ -12,8 +12,8 @@ namespace luxel::scene {
 /// which is 0 for floors and walls along the axes, however long; and of an eighth of the longest
 /// extent. `extent_m`: the sides of its box; `n`: its unit normal. Of triangles: Facet::size_m.
 float size_for_rounding(const Mat34& world_from_object, Vec3 extent_m, Vec3 n);
-/// How far rounding may put a point off its surface [m]: a part of its largest coordinate or of
-/// that size.
+/// The distance by which rounding may put a point off its surface [m]: a part of its largest
+/// coordinate or of that size.
 float rounding_m(Vec3 position, float size_m);
 /// Where rays leave a surface: `position` moved along `normal`, the side they leave from, by
 /// rounding_m(), so that it does not lie behind the surface.

@@ -152,14 +152,14 @@ std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p) {
 
 namespace {
 
-/// What of a surface's light is not left to metal.
+/// The share of a surface's light that is not left to metal.
 float diffuse_share(const Scene& scene, const SurfacePoint& p, const Material& material) {
   const float metallic =
       material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
   return 1 - std::clamp(metallic, 0.0f, 1.0f);
 }
 
-/// What of that is scattered through.
+/// The share of that light which is scattered through.
 float scattered_share(const Scene& scene, const SurfacePoint& p, const Material& material) {
   if (!(material.diffuse_transmission > 0)) return 0;
   return std::clamp(material.diffuse_transmission *

@@ -31,12 +31,12 @@ struct Texture {
   std::string mime_type;           ///< of `encoded`
 };
 
-/// What a texture shows beyond its edges, as in glTF.
+/// The continuation of a texture beyond its edges, as in glTF.
 enum class Wrap : uint8_t { repeat, clamp, mirror };
-/// How a texture is read between its pixels.
+/// The look-up of a texture between its pixels.
 enum class Filter : uint8_t { linear, nearest };
 
-/// How a material looks a texture up: uv' = offset + rotate(scale * uv)  [KHR_texture_transform].
+/// A material's look-up of a texture: uv' = offset + rotate(scale * uv)  [KHR_texture_transform].
 struct TextureRef {
   uint32_t texture = kNone;
   int uv_set = 0;  ///< 0 = TEXCOORD_0, 1 = TEXCOORD_1
@@ -46,7 +46,7 @@ struct TextureRef {
   float rotation = 0;  ///< radians, counter-clockwise in glTF's UV space as the extension defines
 };
 
-/// What alpha means, as in glTF: nothing, holes below a limit, a share that is let through.
+/// The meaning of alpha, as in glTF: nothing, holes below a limit, a share that is let through.
 enum class AlphaMode : uint8_t { opaque, mask, blend };
 
 /// A surface: what it reflects, emits and lets through. Factors are those of glTF 2.0.
@@ -127,7 +127,7 @@ inline float layout_density(const Instance& instance) {
 
 /// A light without area.
 struct PunctualLight {
-  /// How it spreads its light, as in KHR_lights_punctual.
+  /// The way that it spreads its light, as in KHR_lights_punctual.
   enum class Kind : uint8_t { point, spot, directional };
   std::string name;
   Kind kind = Kind::point;
@@ -223,15 +223,14 @@ struct Passage {
   float coverage = 1;
   Rgb tint{1, 1, 1};
 };
-/// What goes straight through the surface at a point, textures included.
+/// The light that goes straight through the surface at a point, textures included.
 Passage passage_at(const Scene& scene, const SurfacePoint& p);
-/// Whether light can go straight through some of a material, holes of masks included; and whether
-/// it may come out coloured.
+/// True: light can go straight through some of a material, holes of masks included.
 bool lets_light_through(const Material& material);
-/// Whether light that goes through a material may come out coloured.
+/// Light that goes through the material may come out coloured.
 bool tints_light(const Material& material);
-/// Whether the back reflects light, too: double-sided materials, and those that light goes through,
-/// for rays leave a pane of glass through the back of its far side, and a leaf glows on both.
+/// The back reflects light, too: of double-sided materials, and of those that light goes through.
+/// Rays leave a pane of glass through the back of its far side, and a leaf glows on both sides.
 bool reflects_from_behind(const Material& material);
 /// Radiance that a ray sees which leaves the scene: background plus environment.
 Rgb surroundings_towards(const Scene& scene, Vec3 direction);

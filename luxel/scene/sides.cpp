@@ -62,7 +62,7 @@ std::array<uint32_t, 3> rotated(const std::array<uint32_t, 3>& corners, size_t f
   return {corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]};
 }
 
-/// Whether light passes both alike. `a` and `b` are the corners of the two at the same places.
+/// True: both triangles let light through alike. `a` and `b` are their corners at the same places.
 bool let_through_alike(const Scene& scene, const Mesh& mesh, uint32_t material_a,
                        uint32_t material_b, const std::array<uint32_t, 3>& a,
                        const std::array<uint32_t, 3>& b) {

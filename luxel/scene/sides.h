@@ -26,7 +26,7 @@ void add_backs(Scene& scene, uint32_t mesh, std::span<const uint8_t> chosen);
 /// solid from then on. `chosen`: one flag per triangle.
 void make_one_sided(Scene& scene, uint32_t mesh, std::span<const uint8_t> chosen);
 
-/// Whether any material scatters light through (KHR_materials_diffuse_transmission).
+/// A material scatters light through (KHR_materials_diffuse_transmission).
 bool scatters_light(const Scene& scene);
 
 }  // namespace luxel::scene

@@ -16,7 +16,7 @@ namespace luxel::scene {
 /// which nothing is bent smoothly (a cube), stays as it is. Indices are in range. Triangles without
 /// area share with none.
 void smooth_normals(Mesh& mesh, float crease_rad);
-/// The same where triangles have smoothing groups, one each: two share the normals of their common
+/// Smooths by smoothing groups, one per triangle: two triangles share the normals of their common
 /// edge, however it bends, if both have the same group and that is not 0, or if it does not bend.
 void smooth_normals(Mesh& mesh, std::span<const uint32_t> group);
 

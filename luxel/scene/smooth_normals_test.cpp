@@ -181,7 +181,7 @@ TEST(SmoothNormals, FollowGroupsHoweverTheMeshBends) {
   EXPECT_LT(largest_angle_to_radius(smoothed({1, 1, 1, 1, 1, 1})), kRounding);
   EXPECT_TRUE(smoothed({0, 0, 0, 0, 0, 0}).normals.empty()) << "off";
   EXPECT_TRUE(smoothed({1, 2, 3, 4, 5, 6}).normals.empty());
-  // Of the faces y = -1 and x = 1 alone the edge between them is smooth: 2 of 24 corners share.
+  // Only the edge between the faces y = -1 and x = 1 is smooth: 2 of 24 corners share.
   const Mesh two = smoothed({0, 0, 7, 0, 0, 7});
   EXPECT_EQ(two.positions.size(), 22u);
 }

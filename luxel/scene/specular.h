@@ -5,7 +5,7 @@
 
 namespace luxel::scene {
 
-/// What glTF says a surface that is no metal mirrors head on: the index of refraction 1.5.
+/// glTF's mirror reflectance of non-metals, head on: that of the index of refraction 1.5.
 inline constexpr float kDielectricF0 = 0.04f;
 
 /// Phong's exponent n about the mirror direction R. A microfacet distribution of width alpha =

@@ -1,4 +1,4 @@
-// What every solver may rely on.
+// Guarantees that every solver may rely on.
 #pragma once
 
 #include <string>
@@ -20,9 +20,9 @@ namespace luxel::scene {
 /// triangle), light that is too bright (check_brightness).
 Result<std::vector<std::string>> validate(Scene& scene, const std::string& file);
 
-/// Whether anything shines besides surfaces: lights, background, environment.
+/// Something shines besides surfaces: lights, background, environment.
 bool has_lamp_or_sky(const Scene& scene);
-/// Whether anything shines: emissive triangles, lights, background, environment.
+/// Something shines: emissive triangles, lights, background, environment.
 bool has_light(const Scene& scene);
 
 }  // namespace luxel::scene

@@ -218,7 +218,7 @@ Status check_lights(Scene& scene, Report& report) {
 /// The widest picture, of height 1, and the narrowest: beyond, a side would have no pixel.
 constexpr float kWidestAspect = 1e4f;
 
-/// Whether rays can start from a camera: its place is held, and so are its axes and the products
+/// True: rays can start from the camera. Its place is held, and so are its axes and the products
 /// that tell which way it looks.
 bool is_usable(const Camera& camera) {
   const Mat34& m = camera.world_from_camera;

@@ -22,7 +22,7 @@ double largest_coordinate(Vec3 p) {
 
 DVec3 absolute(DVec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
 
-/// How much n = e0 x e1 may change, per axis, when a corner at p is rounded and e is the edge
+/// The most that n = e0 x e1 may change, per axis, when a corner at p is rounded and e is the edge
 /// across from it: the product of the edge and of half an ulp of each coordinate, without signs.
 DVec3 rounding_of_normal(Vec3 p, DVec3 e) {
   const DVec3 d = absolute(to_double(p)) * (double(FLT_EPSILON) / 2);
@@ -49,8 +49,8 @@ bool has_area(const Triangle3& t) {
   return n2 > squared_length(by_corners);
 }
 
-/// What becomes of a triangle: flat has no area in its mesh, too_small one that single precision
-/// does not hold, blurred one that the rounding of its place in the world takes away.
+/// A verdict on a triangle: flat has no area in its mesh, too_small one that single precision does
+/// not hold, blurred one that the rounding of its place in the world takes away.
 enum class Fate : uint8_t { kept, flat, too_small, blurred };
 
 /// The verdict on a triangle in the world, where solvers and rays take its normal in single

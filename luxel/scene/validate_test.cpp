@@ -134,7 +134,7 @@ TEST(Validate, AreasAreKeptWithinTheRangeAndNamedBeyond) {
     Scene scene = square(side);
     EXPECT_EQ(warnings_of(scene), "") << side;
     EXPECT_EQ(scene.meshes[0].triangles.size(), 2u) << side;
-    // What every solver asks of a triangle.
+    // Every solver asks a triangle for these.
     EXPECT_NEAR(front_normal(scene, 0, 0).z, 1, 1e-6f) << side;
     EXPECT_NEAR(area_m2(world_triangle(scene, 0, 1)) / side / side, 0.5f, 1e-6f) << side;
   }

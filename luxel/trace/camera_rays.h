@@ -29,7 +29,7 @@ struct CameraRays {
   float width = 1, height = 1;
 };
 
-/// Whether a place lies in the picture and its front turns to the eye, whatever stands before it.
+/// True where a place lies in the picture and its front turns to the eye, occluded or not.
 bool faces(const CameraRays& camera, Vec3 place, Vec3 normal);
 
 /// Surfaces that rays of a picture go through, at most.
@@ -41,8 +41,8 @@ bool is_unseen_back(const scene::Scene& scene, const Hit& hit);
 /// Lets a ray begin just behind a hit.
 void go_on_behind(const Hit& hit, Ray& ray);
 
-/// What each ray meets first when the back faces of one-sided materials are invisible. Such a ray
-/// goes on behind the hit, through kMostSurfaces; `rays` is left where it got to.
+/// The first hit of each ray while the back faces of one-sided materials are invisible. A ray goes
+/// on behind such a back, through kMostSurfaces at most; `rays` is left where it got to.
 std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
                               std::span<Ray> rays);
 

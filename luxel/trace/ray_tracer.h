@@ -1,4 +1,4 @@
-// What a ray hits. Batches in, hits out.
+// Finds the surfaces that rays hit. Batches in, hits out.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct Hit {
   Barycentric at;
   bool back_face = false;  ///< the ray came from behind the front side
 
-  /// Whether the ray meets anything.
+  /// The ray meets a surface.
   bool found() const { return instance != scene::kNone; }
   /// Where it meets it; only when found().
   scene::SurfacePoint point() const { return {instance, triangle, at}; }
@@ -44,7 +44,7 @@ struct TurnedBox {
   Vec3 half_m;                 ///< along each axis
 };
 
-/// What the tracer may expect of 8 or 16 rays that follow each other in a batch: as many as the
+/// Coherence that the tracer may expect of 8 or 16 rays in a row of a batch, as many as the
 /// processor's vectors have numbers.
 enum class Packets : uint8_t {
   any,
@@ -87,18 +87,18 @@ class RayTracer {
   /// so (scene::Passage), stops every ray.
   void closest_covers(std::span<const Ray> rays, std::span<Hit> hits,
                       Packets packets = Packets::any) const;
-  /// What one ray meets first. Many rays are faster in closest_hits().
+  /// The first hit of one ray. Many rays are faster in closest_hits().
   Hit closest_hit(const Ray& ray) const;
   /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;
 
-  /// Whether no triangle reaches into the box, apart from those for which counts(instance,
-  /// triangle) is false. True is certain; false may be said of a box that a triangle only comes
-  /// near to, and is said of every box of a scene with meshes that are stored once. A microsecond:
-  /// worth it where many rays would lie within the box.
+  /// No triangle reaches into the box, apart from those for which counts(instance, triangle) is
+  /// false. True is certain. False may be said of a box that a triangle only comes near to, and is
+  /// said of every box of a scene with meshes that are stored once. Takes a microsecond: worth it
+  /// where many rays would lie within the box.
   bool is_empty(const TurnedBox& box, const std::function<bool(uint32_t, uint32_t)>& counts) const;
 
-  /// Whether there are surfaces that colour the light they let through.
+  /// True: some surface colours the light that it lets through.
   bool has_tints() const;
   /// Multiplies by the tints of what each ray that closest_hits has traced has passed on its way to
   /// its hit, or to its end: call it where has_tints().

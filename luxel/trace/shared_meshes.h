@@ -14,8 +14,8 @@ inline constexpr size_t kMaxFlatTriangles = size_t(1) << 20;
 /// Per mesh: whether it is stored once, which those with several instances are in large scenes.
 std::vector<bool> shared_meshes(const scene::Scene& scene, size_t max_flat_triangles);
 
-/// Whether rays can be taken into the space of a mesh that stands so: not into that of one which is
-/// pressed flat.
+/// True where rays can be taken into the space of a mesh with this transform, which may not press
+/// it flat.
 bool can_be_undone(const Mat34& world_from_object);
 
 }  // namespace luxel::trace

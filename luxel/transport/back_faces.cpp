@@ -60,12 +60,13 @@ BackFaces backs_of(const scene::Scene& scene, const Look& look) {
   return seen;
 }
 
-/// Whether all but a few rays met backs: then it is worth knowing what the fronts are.
+/// At least seven eighths of the rays met backs: then it is worth knowing what the fronts are.
 bool sees_nearly_backs_alone(const BackFaces& seen) {
   return 8 * all_backs(seen) >= 7 * int64_t(seen.rays);
 }
 
-/// Whether a place sees nothing but backs, by all rays of the set.
+/// True where a place sees nothing but backs, or mostly those of one-sided surfaces, by all rays of
+/// the set.
 bool sees_backs_alone(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                       Vec3 normal) {
   Look look = look_from(tracer, from, normal, kMost / 2);
@@ -77,9 +78,9 @@ bool sees_backs_alone(const scene::Scene& scene, const trace::RayTracer& tracer,
   return is_enclosed(backs_of(scene, look));
 }
 
-/// Whether a place lies inside a solid, by all rays of the set. A front that itself sees nothing
-/// but backs counts as a back: the floor within a box whose own bottom lies just as high, so that
-/// rays meet either. `look`: from there, with some of the rays.
+/// True where a place lies inside a solid, by all rays of the set. A front that itself sees nothing
+/// but backs counts as a back, such as the floor within a box whose own bottom lies just as high:
+/// rays meet either of the two. `look`: from there, with some of the rays.
 bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
                 Look& look) {
   look_further(tracer, from, normal, kMost, look);
@@ -101,7 +102,8 @@ bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 
   return true;
 }
 
-/// Whether a place lies inside a solid, by the rays of `look`, and by all where those are not sure.
+/// True where a place lies inside a solid, by the rays of `look`, and by all of the set where those
+/// are not sure.
 bool is_enclosed_by(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                     Vec3 normal, Look& look) {
   const BackFaces seen = backs_of(scene, look);

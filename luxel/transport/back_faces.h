@@ -1,5 +1,5 @@
-// Whether a place lies inside a solid, by its back-face fraction: how much of what it sees are the
-// backs of surfaces. This is the one rule of all solvers, and of the path tracer.
+// Decides if a place lies inside a solid, by its back-face fraction: the share of its view that the
+// backs of surfaces take. This is the one rule of all solvers, and of the path tracer.
 #pragma once
 
 #include <cstdint>
@@ -40,25 +40,26 @@ inline bool is_enclosed(const BackFaceShares& b) {
   return is_hidden(b) || b.one_sided + b.double_sided > 0.98f;
 }
 
-/// What 64 rays at most meet, cosine-distributed about `normal`, the same set for every place. They
-/// start at `from`, which lies just off the surface (scene::off_surface).
+/// Counts the backs that `rays` rays meet, 64 at most, cosine-distributed about `normal`, the same
+/// set for every place. They start at `from`, which lies just off the surface (scene::off_surface).
 BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                            Vec3 normal, int rays);
 
-/// Whether a place lies inside a solid, by so many of those rays. Where nearly all of them see
-/// backs, but not all, 64 decide, for which a front that sees nothing but backs is as good as one,
-/// unless it shines: of the floor within a box whose bottom lies just as high rays meet either.
+/// True where a place lies inside a solid, by so many of those rays. Where nearly all of them see
+/// backs, but not all, 64 decide. A front that sees nothing but backs then counts as a back, unless
+/// it shines: rays to the floor within a box whose bottom lies just as high meet either of the two.
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
                  int rays);
 
-/// Whether a place lies outside of solids, by 32 of those rays at most: most places see no backs,
-/// and most under things nothing else, and a few rays tell.
+/// True where a place lies outside of solids, by 8 to 32 of those rays, and by 64 where nearly all
+/// of them see backs. A few rays mostly tell: most places see no backs, and most under things see
+/// nothing else.
 bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                     Vec3 normal);
 
-/// Whether element i lies inside a solid. `own` is what its own rays met; where they are not sure,
-/// a fixed set decides, so that other samples or another seed do not turn a texel on and off, and
-/// solvers agree.
+/// True where element i lies inside a solid. `own`: the backs that its own rays met. Where they are
+/// not sure, a fixed set decides, so that other samples or another seed do not turn a texel on and
+/// off, and solvers agree.
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                  const Elements& elements, size_t i, const BackFaces& own);
 /// Per element, 1 where it lies inside a solid, else 0. `own(i)` is what its own rays met.

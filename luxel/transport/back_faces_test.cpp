@@ -30,7 +30,7 @@ scene::Scene hall(Rgb lamp) {
   return scene;
 }
 
-/// How many places of the ceiling are enclosed, of those within the pillar and of those without.
+/// Enclosed places of the ceiling, within the pillar and outside of it, of `each` that were tried.
 struct Counts {
   int inside = 0, outside = 0, each = 0;
 };

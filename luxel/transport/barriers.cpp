@@ -20,7 +20,7 @@ constexpr float kLow = 0.5f;
 constexpr float kLowest = 0.05f, kFoot = 1e-3f;
 constexpr std::array kOver{1.0f, 2.0f};
 constexpr int kRaysForOpen = 32;
-/// How far around a texel a way past a barrier is looked for, in texels.
+/// A way past a barrier is looked for so far around a texel, in texels.
 constexpr int kWindow = 3;
 
 /// The other texel of a pair.
@@ -41,7 +41,7 @@ trace::Ray line_above(const FlatPoint& a, const FlatPoint& b, float height_m) {
   return {from, 0, to - from, 1};
 }
 
-/// What is known of a texel.
+/// Openness of a texel, as far as it is known.
 enum class Openness : uint8_t { not_asked, open, enclosed };
 
 /// Work that goes over the texels.
@@ -80,9 +80,9 @@ struct Search {
                            length(q.position - p.position) / o.steps());
   }
 
-  /// Whether nothing is in the way of lines between the texels of a run and their neighbours on
-  /// its triangle, at `height` steps. The texels' samples lie anywhere in them: a step between two
-  /// may be three times that between their centres.
+  /// True: nothing is in the way of lines between the texels of a run and their neighbours on its
+  /// triangle, at `height` steps. The texels' samples lie anywhere in them: a step between two may
+  /// be three times that between their centres.
   bool has_clear_lines(TexelRun run, float height) const {
     const FlatPoint p = place(run.first);
     const float rounding_m = scene::rounding_m(p.position, p.size_m);
@@ -157,8 +157,8 @@ Result<std::vector<uint8_t>> Search::open_ways(Team* team, Progress& progress) c
   return ways;
 }
 
-/// Whether open ways lead from a texel to the one at `to` within the window: light that comes
-/// around the end of a barrier, or the corner of a box, as near as that.
+/// True where open ways lead from a texel to the one at `to` within the window: light comes around
+/// the end of a barrier, or the corner of a box, as near as that.
 bool Search::is_way_past(uint32_t a, const Offset& to, std::span<const uint8_t> ways) const {
   constexpr int kAcross = 2 * kWindow + 1;
   std::array<uint8_t, size_t(kAcross) * kAcross> seen{};

@@ -26,16 +26,16 @@ FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p);
 /// Where rays start there: off the surface by what rounding may do.
 Vec3 just_above(const FlatPoint& p);
 
-/// Whether what a line between two places of `chart` meets parts them: something opaque that is not
-/// the surface itself, which bends without being a barrier.
+/// True where a hit of a line between two places of `chart` parts them: the surface there is opaque
+/// and not the places' own, which bends without being a barrier.
 bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t chart,
                 const trace::Hit& hit);
 
-/// What parts two neighbouring places: something opaque that cuts the line between them half a step
-/// above the surface, a step being `step_m`, and the ways up, across and down at one step and at
-/// two. A fence of less than two texels' height is no barrier, because light comes over it within a
-/// texel. The surface itself, `chart`, bends without being one. Returns the plane of what the line
-/// meets first.
+/// The barrier between two neighbouring places: something opaque that cuts the line between them
+/// half a step above the surface, a step being `step_m`, and the ways up, across and down at one
+/// step and at two. A fence of less than two texels' height is no barrier, because light comes over
+/// it within a texel. The surface itself, `chart`, bends without being one. Returns the plane of
+/// the surface that the line meets first.
 std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atlas& atlas,
                                      const trace::RayTracer& tracer, uint32_t chart,
                                      const FlatPoint& a, const FlatPoint& b, float step_m);
@@ -57,8 +57,8 @@ struct ChartPoint {
   FlatPoint at;
   uint32_t chart = 0;
 };
-/// Whether light can be the same at two neighbouring places: nothing opaque is in the way of one of
-/// the ways up, across and down at a twentieth of a step above the surface, a half, one and two.
+/// True where light can be the same at two neighbouring places: nothing opaque is in the way of one
+/// of the ways up, across and down at a twentieth of a step above the surface, a half, one and two.
 /// Both charts bend without being in the way. A wall that leans over the surface, inside of which
 /// barrier_between() may begin, is seen.
 bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,

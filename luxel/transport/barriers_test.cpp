@@ -32,7 +32,7 @@ TEST(Barriers, AThinWallPartsEveryRow) {
   }
 }
 
-/// Whoever waits sees how far the search is, and may stop it.
+/// The search counts each texel twice: for open ways, and for pairs. A cancelled one stops at once.
 TEST(Barriers, AreSearchedWithProgress) {
   Floor floor;
   floor.add_box({0.99f, 0, 0}, {1.0f, 1, 2});

@@ -27,9 +27,9 @@ struct Clearance {
   bool own_chart = false;  ///< whether other triangles of the run's chart count, too
 };
 
-/// Whether nothing lies above a run and the texels around it. The run's own triangle does not
-/// count, nor the other side of its sheet. True is certain. False is also said where asking is not
-/// worth it, because the run is short.
+/// Nothing lies above a run and the texels around it. The run's own triangle does not count, nor
+/// the other side of its sheet. True is certain. False is also said of a run too short to be worth
+/// asking about.
 bool is_clear(const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::TexelMap& map,
               const trace::RayTracer& tracer, TexelRun run, const Clearance& clearance);
 

@@ -14,8 +14,7 @@ namespace {
 
 const Clearance kHalfATexelUp{-1e-5f, 0.5f, 0, false};
 
-/// Whether the texels of a row from column 20 on, which lie in one triangle of the floor, are
-/// clear.
+/// The texels of a row from column 20 on are clear. They lie in one triangle of the floor.
 bool row_is_clear(Floor& floor, uint32_t row, const Clearance& clearance) {
   const trace::RayTracer rays = floor.tracer();
   const uint32_t first = floor.map.texel_at[row * Floor::kSide + 20];
@@ -58,7 +57,8 @@ TEST(ClearRuns, AreNotWhereSomethingStands) {
   EXPECT_FALSE(row_is_clear(under, 3, {-0.02f, 0.5f, 0, false}));
 }
 
-/// What else is of the run's chart is asked for or not: here the floor's other triangle.
+/// Clearance::own_chart decides if other triangles of the run's chart count: here the floor's
+/// second.
 TEST(ClearRuns, KnowTheirOwnChart) {
   Floor floor;
   EXPECT_TRUE(row_is_clear(floor, 3, kHalfATexelUp));

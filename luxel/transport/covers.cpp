@@ -46,7 +46,7 @@ std::vector<scene::SurfacePoint> shining_places(const scene::Scene& scene) {
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m) {
   const trace::Hit above = tracer.closest_hit({from, 0, normal, kHighest * size_m});
   if (!above.found()) return 1;
-  // What rays meet on their way out of the gap.
+  // Hits of rays on their way out of the gap.
   std::array<trace::Ray, kRays> rays;
   std::array<trace::Hit, kRays> hits;
   const Frame frame = frame_around(normal);
@@ -55,7 +55,7 @@ float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float s
     rays[k] = {from, 0, frame.to_world(d), kAbove * above.t / std::max(d.z, kSteep)};
   }
   tracer.closest_hits(rays, hits);
-  // And whether that lies over the place's own surface.
+  // A ray down from each hit tells if it lies over the place's own surface.
   std::array<trace::Ray, kRays> down;
   std::array<uint8_t, kRays> closed{};
   size_t met = 0;

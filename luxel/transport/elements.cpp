@@ -38,7 +38,7 @@ Rgb mean_over_texel(const scene::Scene& scene, const atlas::Atlas& atlas, const 
   return sum / count;
 }
 
-/// How far a bulge may rise, relative to the triangle's size: more than the sagitta of a sphere of
+/// Highest rise of a bulge, relative to the triangle's size: more than the sagitta of a sphere of
 /// eight segments, and little enough not to come out behind a neighbouring wall.
 constexpr float kMaxBulge = 0.25f;
 

@@ -31,7 +31,7 @@ struct Elements {
   size_t size() const { return std::max(position.size(), reflectance.size()); }
 };
 
-/// What drop_places() gives back.
+/// Memory that drop_places() frees.
 inline constexpr uint64_t kPlaceBytesPerElement =
     bytes_per_entry(&Elements::position, &Elements::normal, &Elements::geometric_normal);
 

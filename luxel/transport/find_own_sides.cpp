@@ -31,7 +31,7 @@ struct Walls {
   std::vector<uint8_t> parted, beside;
 };
 
-/// What is known of a texel's sample.
+/// Answer of is_inside_solid() for a texel's sample.
 enum class Inside : uint8_t { not_asked, no, yes };
 
 /// Places on the outlines of what some texels' charts have in them.
@@ -44,8 +44,9 @@ struct Outlines {
 struct WallSearch : TexelSpots {
   std::span<Inside> inside{};  ///< per texel, as is_inside_solid() finds it
 
-  /// Whether light at a spot is never read, since it lies inside a solid for sure: more than half
-  /// of what it sees would do.
+  /// True where a spot lies inside a solid for sure, so that its light is never read: backs of
+  /// one-sided surfaces take more than three quarters of its view, and a half would do, or it sees
+  /// nothing but backs.
   bool is_inside_solid(const Spot& s) const {
     const BackFaces seen =
         count_back_faces(in.scene, in.tracer, just_above(s.at), s.at.normal, kRaysForInside);
@@ -73,8 +74,8 @@ struct WallSearch : TexelSpots {
   Result<Walls> find_walls(Team* team, Progress& progress) const;
 };
 
-/// Whether a wall stands between two neighbours that do not see each other. Around the corner of a
-/// box, diagonal ones are seen by the texel between them.
+/// True where a wall stands between two neighbours that do not see each other. Around the corner of
+/// a box none does: the texel between two diagonal ones sees both.
 bool WallSearch::parts(const Neighbours& pair) const {
   if (is_inside_solid(pair.a) || is_inside_solid(pair.b)) return false;
   const auto [dx, dy] = pair.offset;
@@ -122,7 +123,7 @@ void WallSearch::add_outline(uint32_t texel, uint32_t of, std::span<const uint32
   }
 }
 
-/// Whether a wall stands between the sample of each of `texels` and some of its outline.
+/// Sets parted[k] where a wall stands between the sample of texels[k] and some of its outline.
 void WallSearch::find_parted_within(std::span<const uint32_t> texels, const Outlines& outlines,
                                     std::span<uint8_t> parted) const {
   SpotMaker maker = this->maker();
@@ -143,7 +144,7 @@ void WallSearch::find_parted_within(std::span<const uint32_t> texels, const Outl
   }
 }
 
-/// Whether nothing is in the way of lines between the texels of a run and their neighbours on its
+/// True: nothing is in the way of lines between the texels of a run and their neighbours on its
 /// triangle.
 bool WallSearch::has_clear_lines(TexelRun run) const {
   const FlatPoint p = flat_point(in.scene, in.map.texels[run.first].sample);

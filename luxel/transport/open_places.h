@@ -10,7 +10,7 @@
 
 namespace luxel::transport {
 
-/// What rays that ask for places are traced in.
+/// The scene in which rays look for open places.
 struct PlaceSearch {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;

@@ -10,7 +10,7 @@
 
 namespace luxel::transport {
 
-/// What looking up in one map needs, reused from call to call.
+/// Buffers for look-ups in one map, reused from call to call.
 struct LookupBuffers {
   /// Spots of texels that were asked for before.
   struct KnownSpot {

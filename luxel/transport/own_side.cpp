@@ -9,7 +9,7 @@
 namespace luxel::transport {
 namespace {
 
-/// How far from a look-up's texels what decides about it lies, at most.
+/// Surfaces that decide about a look-up lie no farther from its texels than this, in texels.
 constexpr float kReachTexels = 4;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Which texels around a place lie on its own side of every wall. docs/method/leaks.md
+// Finds the texels around a place that lie on its own side of every wall. docs/method/leaks.md
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct OwnSides {
   bool is_beside_solids(uint32_t base) const { return beside_solids[base / 64] >> (base % 64) & 1; }
 };
 
-/// Whether a place may lie inside a solid: that of a path does that began in the joint of two.
+/// Yes: a place may lie inside a solid, as on a path that began in the joint of two solids.
 enum class MayBeInside : bool { no, yes };
 
 /// Looks for walls between the samples of neighbouring texels, in rows, columns and diagonals, and
@@ -61,7 +61,7 @@ Result<OwnSides> find_own_sides(const scene::Scene& scene, const atlas::Atlas& a
 /// them; else kReadsNothing. The same in every call.
 LookupPlace own_lookup(const OwnSides& sides, const scene::SurfacePoint& p,
                        MayBeInside inside = MayBeInside::no);
-/// Whether own_lookup() reads something.
+/// True where own_lookup() reads something.
 bool has_own_texel(const OwnSides& sides, const scene::SurfacePoint& p);
 
 /// E of the front side at a surface point, read where own_lookup() says: bilinear over the texels

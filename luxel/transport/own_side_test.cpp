@@ -11,7 +11,7 @@
 namespace luxel::transport {
 namespace {
 
-/// What light is on the floor: 1 beyond the wall, else 0.
+/// Light on the floor, per texel: 1 beyond the wall, else 0.
 std::vector<Rgb> light_beyond(const Floor& floor, float wall_x) {
   std::vector<Rgb> out;
   for (const atlas::Texel& t : floor.map.texels) {

@@ -23,7 +23,7 @@ struct Spot {
 };
 
 trace::Ray line_between(const Spot& a, const Spot& b);
-/// What leans over a place is in its way.
+/// Ray that meets whatever leans over a place.
 trace::Ray line_up(const Spot& s);
 
 /// Makes spots over which nothing leans, for all that is known. Those that follow each other mostly
@@ -53,9 +53,9 @@ std::vector<Spot> spots_at(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const trace::RayTracer& tracer,
                            std::span<const scene::SurfacePoint> places);
 
-/// Whether spots of two charts are no neighbours in space.
+/// True where spots of two charts are no neighbours in space.
 bool is_far(const Spot& a, const Spot& b);
-/// Whether what a line from a to b has met stands between them.
+/// True where the hit of a line from a to b stands between them.
 bool is_between(const scene::Scene& scene, const atlas::Atlas& atlas, const Spot& a, const Spot& b,
                 const trace::Hit& hit);
 bool sees(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,

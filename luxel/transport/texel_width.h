@@ -1,4 +1,4 @@
-// How wide a texel is in the world.
+// Width of a texel in the world.
 #pragma once
 
 #include "luxel/atlas/atlas.h"

@@ -22,7 +22,7 @@ constexpr float kFeelerSlope = 0.34f;  ///< the sine of the angle at which they 
 /// Charts of no more texels are looked at texel by texel: they fall between those of a lattice.
 constexpr uint32_t kSmallChart = 32;
 
-/// What looks around samples.
+/// Looks around samples.
 struct Probe : PlaceSearch {
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {
@@ -38,7 +38,7 @@ struct Probe : PlaceSearch {
     }
   }
 
-  /// Whether the feelers of a run's samples meet nothing.
+  /// True: the feelers of a run's samples meet nothing.
   bool has_clear_feelers(const atlas::TexelMap& map, TexelRun run) const {
     const scene::SurfacePoint& p = map.texels[run.first].sample;
     // No feeler of the run starts lower than this, twice.
@@ -49,7 +49,7 @@ struct Probe : PlaceSearch {
   }
 };
 
-/// What is known of a texel.
+/// Findings about a texel.
 enum class Found : uint8_t { nothing, back_near, enclosed, moved };
 
 /// The run that begins at texels[k]: none of its texels is left out of `texels`, which ascend.
@@ -105,7 +105,7 @@ uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
 /// all are looked at.
 Status look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found,
                         Team* team, Progress& progress) {
-  // Whether the texels of a lattice are enclosed.
+  // Finds the texels of a lattice that are enclosed.
   constexpr int kStep = 4;
   const int across = (map.resolution + kStep - 1) / kStep;
   const auto on_lattice = [&](int u, int v) { return texel_at(map, u * kStep, v * kStep); };

@@ -67,7 +67,7 @@ Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver
     }
     squares += texel, squares2 += texel * texel;
   }
-  // What is not a number is not agreement.
+  // NaN and infinity are no agreement.
   if (!std::isfinite(squares)) squares = squares2 = INFINITY;
   out.relative_rmse = std::sqrt(std::max(0.0, squares / n));
   // Channels share their paths: the texel is what is independent.

@@ -39,7 +39,7 @@ Result<Judged> judge(const scene::Scene& scene, const trace::RayTracer& tracer,
                      const reference::Receivers& receivers, int samples_each, uint64_t seed,
                      Progress& progress);
 
-/// How far a solver's E lies from the truth. With D = g - truth and two independent, unbiased
+/// Distance of a solver's E from the truth. With D = g - truth and two independent, unbiased
 /// answers a and b of the judge, the mean of (g - a)(g - b) tends to the mean of D^2: the judge's
 /// own noise drops out. Relative errors are D / (g + 0.01 mean(g)): relative to the solver, because
 /// a noisy denominator that goes with a and b would bring their noise back; `luxel compare` divides

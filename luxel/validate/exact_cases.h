@@ -27,8 +27,8 @@ struct ExactCase {
   scene::Scene scene;
   int resolution = 64;  ///< of the lightmap
   std::vector<ExactPart> parts;
-  /// How far the scene's own exact light may lie from the formula (facets, finite plates),
-  /// relative.
+  /// Relative distance up to which the scene's own exact light may lie from the formula (facets,
+  /// finite plates).
   double slack = 0;
 };
 

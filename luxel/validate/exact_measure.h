@@ -1,4 +1,4 @@
-// How far a solver lies from an exact answer.
+// Measures a solver's error against an exact answer.
 #pragma once
 
 #include <string_view>
@@ -29,8 +29,8 @@ struct MeasureEffort {
   int paths_per_point = 32;
 };
 
-/// Whether a solver can be asked for a case yet. The hierarchical solver cannot for the spheres,
-/// whose 10,000 facets and more it links by the million, in minutes.
+/// True where a solver can be asked for a case by now. The hierarchical solver cannot for the
+/// spheres: it links their 10,000 facets and more by the million, in minutes.
 bool is_ready_for(std::string_view solver, const ExactCase& c);
 
 /// One for each part of the case. `p` is the case's scene at its resolution. A solver's mean is

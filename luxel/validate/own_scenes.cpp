@@ -22,7 +22,7 @@ bool is_inside(Vec3 p) {
   return std::abs(p.x) < 1.9899f && std::abs(p.z) < 1.4899f && p.y > 0 && p.y < 2.4f;
 }
 
-/// What of a solution lies on the floor, instance 0.
+/// Part of a solution that lies on the floor, instance 0.
 struct Floor {
   std::vector<size_t> texels;
   transport::Elements elements;

@@ -1,5 +1,5 @@
-// What must hold in scenes of our own: darkness behind thin walls, light beneath leaves. Tests hold
-// bakes to it, `luxel bench scenes` prints it.
+// Facts that must hold in scenes of our own: darkness behind thin walls, light beneath leaves.
+// Tests hold bakes to them, `luxel bench scenes` prints them.
 #pragma once
 
 #include "luxel/pipeline/bake/bake_scene.h"

@@ -1,4 +1,4 @@
-// Whether the errors that solvers state are true.
+// Compares the errors that solvers state with their true errors.
 #pragma once
 
 #include <string_view>
@@ -36,7 +36,7 @@ Result<JudgedParts> judge_parts(const Prepared& p, int samples_each, uint64_t se
 StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged,
                          const JudgedParts& shared = {});
 
-/// What a stated error claims to be.
+/// Claim that a stated error makes.
 enum class Claim {
   bound,     ///< the truth is no larger
   estimate,  ///< the truth is within a factor of kEstimateFactor, either way
@@ -50,8 +50,8 @@ struct Compared {
   double truth = 0, low = truth, high = truth;
 };
 
-/// How often the truth is as stated, over many solutions. What the judge cannot tell from a claim
-/// that holds counts as one that does.
+/// Solutions in which a claim holds, out of many. A claim that the judge cannot tell from a true
+/// one counts as one that holds.
 struct Held {
   int scenes = 0;
   int holds = 0;            ///< in so many of them the claim holds

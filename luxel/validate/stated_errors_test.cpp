@@ -115,7 +115,7 @@ TEST(StatedErrors, CountsWhatHolds) {
   EXPECT_EQ(held(Claim::estimate, entries).holds, 2);
 }
 
-// What lies beyond by less than the judge's noise is not refuted.
+// A truth beyond the claim by less than the judge's noise does not refute it.
 TEST(StatedErrors, CountsWhatTheJudgeCannotTell) {
   const std::vector<Compared> entries{
       {1, 1.1, 0.9, 1.3}, {1, 1.1, 1.05, 1.2}, {1, 0.5, 0.3, 0.7}, {1, 0.5, 0.4, 0.6}};

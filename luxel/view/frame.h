@@ -1,4 +1,4 @@
-// What a picture of the viewer shows.
+// Content of a picture in the viewer.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace luxel::view {
 
-/// What of surfaces is shown.
+/// Aspect of surfaces that is shown.
 enum class Show : uint32_t {
   light_and_colour,  ///< what they send to the eye
   light,             ///< as if all surfaces were white
   colour,            ///< their reflectance, whatever falls on them
-  // What a bake is made of: luxel/view/model/look.h.
+  // Parts of a bake: luxel/view/model/look.h.
   irradiance,  ///< the light that falls on them, in false colours
   checker,     ///< the lightmap's texels as squares, lit
   density,     ///< texels per metre, in false colours
@@ -29,8 +29,8 @@ enum class Show : uint32_t {
   error,       ///< error.png
 };
 
-/// What of surfaces can be shown: its name in files that are played, the key that asks for it, and
-/// words for it. In the order of Show.
+/// Words for a Show: its name in files that are played, the key that asks for it, and a
+/// description. In the order of Show.
 struct ShowName {
   const char *name, *key, *words;
 };
@@ -48,14 +48,14 @@ inline constexpr std::array<ShowName, 11> kShows{{
     {"error", "", "standard error of texels"},
 }};
 
-/// Whether it shows a bake and not the scene.
+/// True: it shows a bake and not the scene.
 inline bool looks_into_bake(Show show) { return show >= Show::irradiance; }
 
-/// What of light becomes a false colour.
+/// Channel of light that becomes a false colour.
 enum class Channel : uint32_t { red, green, blue, luminance };
 inline constexpr std::array<const char*, 4> kChannels{"red", "green", "blue", "luminance"};
 
-/// What of the light is shown, by how often it was reflected since it left its lamp.
+/// Part of the light that is shown, by its reflections since it left its lamp.
 struct LightShown {
   uint32_t fewest = 0;           ///< reflections that it has behind it
   std::optional<uint32_t> most;  ///< none: any number
@@ -82,7 +82,7 @@ struct ColorScale {
   friend bool operator==(const ColorScale&, const ColorScale&) = default;
 };
 
-/// How a second bake is shown beside the first.
+/// Ways to show a second bake beside the first.
 enum class BesideMode : uint32_t { split, difference, flip };
 inline constexpr std::array<const char*, 3> kBesideModes{"split", "difference", "flip"};
 struct Beside {
@@ -92,7 +92,7 @@ struct Beside {
 /// The relative difference of luminance that has the last of the false colours.
 inline constexpr float kMostDifference = 0.2f;
 
-/// What became of a layer's light since it was baked.
+/// Change of a layer's light since it was baked.
 struct LayerSetting {
   std::string name;
   float dimmer = 1;    ///< factor of it

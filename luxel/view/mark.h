@@ -1,4 +1,4 @@
-// What is drawn over a picture to be taken hold of.
+// Marks drawn over a picture, to be taken hold of.
 #pragma once
 
 #include <array>

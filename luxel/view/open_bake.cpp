@@ -27,7 +27,7 @@ Status add_surroundings(const std::filesystem::path& folder, const nlohmann::jso
                         OpenedBake& out) {
   pipeline::OutsideLight outside = pipeline::outside_light_of_bake(folder, {}, out.warnings);
   if (report.value("default_day", nlohmann::json()) == true) outside.sky = pipeline::kDefaultSky;
-  // What it warns of was said when the bake was made.
+  // Its warnings were given when the bake was made.
   LUXEL_TRY_STATUS(pipeline::add_outside_light(outside, out.scene));
   return {};
 }

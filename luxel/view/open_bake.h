@@ -14,7 +14,7 @@
 
 namespace luxel::view {
 
-/// What lies in a bake's folder.
+/// Contents of a bake's folder.
 struct OpenedBake {
   std::filesystem::path folder;
   scene::Scene scene;  ///< of baked.glb, with the surroundings that it was baked under

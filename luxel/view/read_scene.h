@@ -30,7 +30,7 @@ struct ReadScene {
   std::optional<SkySun> sun;               ///< none: there is no such sky, or it is night
 };
 
-/// What the tracer of a scene is good for: many rays, or being made again after each edit.
+/// Purpose of a scene's tracer: many rays, or being made again after each edit.
 enum class TracedFor : uint8_t { solvers, edits };
 
 /// The scene that a file holds, ready to be looked at, by the view that the settings ask for.

@@ -1,4 +1,4 @@
-// How surfaces are drawn in the workshop of local illumination and hemicube radiosity.
+// Techniques that draw surfaces in the workshop of local illumination and hemicube radiosity.
 // [Rodriguez06]
 #pragma once
 
@@ -42,12 +42,12 @@ inline constexpr std::array<TechniqueName, 11> kTechniques{{
     {"elements", "t", "triangles in colours"},
 }};
 
-/// Whether it shows light, which is exposed and shown over a curve; the others are colours that a
+/// True: it shows light, which is exposed and shown over a curve. The others are colours that a
 /// screen shows.
 inline bool is_light(Technique t) {
   return t == Technique::radiosity_vertex || t == Technique::radiosity;
 }
-/// Whether it needs the mesh of the hemicube solver.
+/// True: it needs the mesh of the hemicube solver.
 inline bool needs_mesh(Technique t) { return t >= Technique::radiosity_vertex; }
 
 }  // namespace luxel::view

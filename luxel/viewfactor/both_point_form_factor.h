@@ -71,8 +71,8 @@ BOTH void add_corner(INOUT(EdgeSum) e, dvec3 p) {
   e.count = e.count + 1;
   e.last = p;
 }
-// What lies above the horizon of the side from p to q, whose heights are hp and hq: the rest is
-// clipped away on the fly [Sutherland74].
+// Adds the side from p to q, whose heights are hp and hq, as far as it lies above the horizon. The
+// rest is clipped away on the fly [Sutherland74].
 BOTH void add_side(INOUT(EdgeSum) e, dvec3 p, double hp, dvec3 q, double hq) {
   if (hp >= 0) add_corner(e, p);
   if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) add_corner(e, p + (q - p) * (hp / (hp - hq)));

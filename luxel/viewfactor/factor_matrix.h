@@ -35,7 +35,7 @@ struct FactorSelection {
   uint32_t from = scene::kNone, to = scene::kNone;
 };
 
-/// How well the matrix keeps the laws.
+/// Deviations of the matrix from the sum rule and from reciprocity.
 struct FactorChecks {
   std::vector<double> row_sum;
   double largest_row_error = 0;  ///< |1 - row sum|: 0 when the surfaces close a room
@@ -44,7 +44,7 @@ struct FactorChecks {
 /// Measures a whole matrix.
 FactorChecks check_factors(const FactorMatrix& matrix);
 
-/// How exact factors past blockers are to be, and what bounds the work.
+/// Accuracy of factors past blockers, and a bound on the work.
 struct AnalyticParams {
   /// Relative error of pairs of polygons with something between them; of factors below 1e-3 of the
   /// smaller polygon, the error of one of that size.

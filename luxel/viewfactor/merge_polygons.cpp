@@ -127,7 +127,7 @@ Status find_twins(Merging& m, const Progress& progress) {
   return {};
 }
 
-/// How the outline turns at a corner.
+/// Turn of the outline at a corner.
 enum class Turn { left, straight, right };
 Turn turn_at(DVec3 before, DVec3 at, DVec3 after, DVec3 normal, double slack) {
   const DVec3 chord = after - before;

@@ -130,7 +130,7 @@ bool cut_out_of_visible(double slack, VisibilityScratch& s) {
   return falls;
 }
 
-/// Whether the shadow falls on all of s.polygon, seen or not.
+/// True: the shadow falls on a part of s.polygon, seen or not.
 bool falls_on_polygon(double slack, VisibilityScratch& s) {
   s.next.clear();
   return cut_out(s.polygon, s.crossed, slack, s);

@@ -1,4 +1,4 @@
-// What a point sees of a polygon past opaque polygons: exact shadows.
+// The part of a polygon that a point sees past opaque polygons: exact shadows.
 #pragma once
 
 #include <cstdint>

@@ -46,7 +46,7 @@ double double_area_integral(PolygonView a, PolygonView b, std::span<const Node> 
   return sum;
 }
 
-/// How far apart the polygons are at least, and the radii of balls around them.
+/// A lower bound on the distance of the polygons, and the radii of balls around them.
 struct Separation {
   double distance = 0, radius_a = 0, radius_b = 0;
 };

@@ -32,7 +32,7 @@ TEST(PolygonFormFactor, MatchesTheExactTable) {
   EXPECT_GE(points, 6);
 }
 
-/// How the polygons of a pair lie.
+/// Arrangement of the polygons of a pair.
 struct PairCase {
   const char* name;
   double size_a, size_b, apart;

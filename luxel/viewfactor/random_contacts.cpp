@@ -29,7 +29,7 @@ Polygon turned_over(Polygon p) {
   return p;
 }
 
-/// What a polygon exchanges with the front of another, from both of its sides.
+/// Exchange area of both sides of a polygon with the front of another.
 double both_sides(const Polygon& s, const Polygon& b) {
   return polygon_exchange_area(s, b).value + polygon_exchange_area(turned_over(s), b).value;
 }

@@ -36,7 +36,7 @@ Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& 
                                      const FactorSelection& selection, Progress& progress,
                                      Team* team = nullptr);
 
-/// What the sampling needs besides the matrix, for this number of surfaces.
+/// Memory of the sampling besides the matrix, for this number of surfaces.
 uint64_t sampled_factor_bytes(size_t surfaces, const SampledParams& params);
 
 /// Adds the factors from a point to each surface by one hemicube to `sums` (one per surface).

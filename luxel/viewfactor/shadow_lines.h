@@ -56,8 +56,8 @@ struct Chord {
 /// shadow ends before.
 Chord chord_of(const ShadowLine& line, const Triangle& triangle, double slack);
 
-/// How far the narrowest penumbra on a receiver is, against the receiver's radius: 0 where a
-/// blocker touches it, infinite where no line falls on it.
+/// Width of the narrowest penumbra on a receiver, at most its edge's height, over the receiver's
+/// radius: 0 where a blocker touches it, infinite where no line falls on it.
 double narrowest_penumbra(const ShadowLines& lines, double radius_m);
 
 }  // namespace luxel::viewfactor

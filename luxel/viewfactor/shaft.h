@@ -22,7 +22,7 @@ Shaft shaft_between(PolygonView a, PolygonView b, double slack);
 bool is_outside(const Shaft& shaft, PolygonView polygon);
 /// True when the box certainly lies outside.
 bool is_outside(const Shaft& shaft, DVec3 lower, DVec3 upper);
-/// How far a polygon reaches into the shaft between a and b.
+/// Reach of a polygon into the shaft between a and b.
 struct Intrusion {
   double area_m2 = 0;  ///< of the part inside
   /// A guess at the share of lines from a to b that it can hide, from its depth d below the facet

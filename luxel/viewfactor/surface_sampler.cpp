@@ -36,7 +36,7 @@ SurfaceSample sample_surface(const SurfaceSampler& sampler, Vec2 u) {
   const double at = double(u.x) * below.back();
   const auto next = std::upper_bound(below.begin(), below.end() - 1, at);
   const size_t t = size_t(next - below.begin()) - 1;
-  // What is left of u.x after the choice is uniform again.
+  // The remainder of u.x after the choice is uniform again.
   const double rest = (at - below[t]) / (below[t + 1] - below[t]);
   const float x = float(std::clamp(rest, 0.0, 0x1.fffffep-1));
   const scene::Facet& triangle = sampler.triangles[t];

@@ -12,7 +12,7 @@
 
 namespace luxel::viewfactor {
 
-/// How far rounding to float may have moved a corner [m]; 0 without any.
+/// Distance by which rounding to float may have moved a corner [m]; 0 without any corner.
 double corner_rounding_m(const scene::Scene& scene);
 
 /// An instance's triangles in the world, corners counter-clockwise from the front also where the

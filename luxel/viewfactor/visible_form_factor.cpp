@@ -168,7 +168,7 @@ Cell evaluate(PairIntegral& pair, const Triangle& corners, std::span<const uint3
   return cell;
 }
 
-/// How far the triangle reaches from a point in it.
+/// Distance from a point in the triangle to its border in a direction.
 double room_towards(const Triangle& triangle, DVec3 from, DVec3 direction) {
   const DVec3 up = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   double room = INFINITY;
@@ -187,8 +187,8 @@ struct Cut {
   double score = 0;  ///< its length times `room`
 };
 
-/// How much of b comes into view or is lost across a line, within a twentieth of the cell. Thin
-/// walls hide as much to both sides of their foot and nothing a little farther.
+/// Share of b that comes into view or is lost across a line, within a twentieth of the cell. Thin
+/// walls hide as much on both sides of their foot, and nothing a little farther off.
 double jump_across(PairIntegral& pair, const Cell& cell, const Cut& cut) {
   const double step = std::min(0.5 * cut.room, 0.05 * longest_edge(cell.corners));
   std::array<double, 4> share{};
@@ -252,7 +252,7 @@ std::vector<Cell> split(PairIntegral& pair, const Cell& cell) {
   return parts;
 }
 
-/// What splitting changed is the parent's error, and at kinks, where the rule is at its worst, the
+/// The change by splitting is the parent's error. At kinks, where the rule is at its worst, the
 /// children together have a fourth of it left; where a shadow still ends abruptly, all of it.
 /// Symmetry may hide a change: the guess falls to no less than a certain share in one step.
 void share_error(const Cell& parent, std::span<Cell> children) {

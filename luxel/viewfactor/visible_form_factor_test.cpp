@@ -88,7 +88,7 @@ TEST(VisibleFormFactor, SmallBlockersAreNotOverlooked) {
   for (const double x : {0.13, 0.41, 0.77}) {
     const std::vector<Polygon> coin{horizontal(x, 0.31, x + 0.02, 0.33, 0.01)};
     const double blocked = form_factor(kLowerSquare, kUpperSquare, coin, 1e-6).value;
-    // What the coin hides of the ceiling is what it sees of it, less what its back side sees.
+    // The coin hides as much of the ceiling as it sees: all lines through it reach the floor.
     const double hidden = area_m2(coin[0]) * form_factor(coin[0], kUpperSquare).value;
     EXPECT_NEAR(open - blocked, hidden, 1e-5 * open) << x;
   }

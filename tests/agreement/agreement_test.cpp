@@ -11,7 +11,7 @@
 namespace luxel::validate {
 namespace {
 
-/// What a solver may differ by, and why.
+/// Allowed difference of a solver, and the reason.
 struct Tolerance {
   std::string_view solver, scene;
   double relative_rmse, bias;
@@ -79,7 +79,7 @@ constexpr Tolerance kTolerances[] = {
     {"reference", "coloured glass", 0.16, 0.009, "its own noise: 0.12; most paths miss the sky"},
 };
 
-/// What a solver says that it cannot do (docs/method/lights.md).
+/// A scene that a solver says it cannot do (docs/method/lights.md).
 struct LeftOut {
   std::string_view solver, scene, reason;
 };

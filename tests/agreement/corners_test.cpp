@@ -61,7 +61,7 @@ std::vector<uint32_t> corners_first(const scene::Scene& box, const Solution& s, 
   return out;
 }
 
-/// What an element may differ by, and why.
+/// Allowed difference of an element, and the reason.
 struct Case {
   ElementKind kind;
   float max_error, worst;

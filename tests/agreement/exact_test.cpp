@@ -28,8 +28,8 @@ constexpr MeasureEffort kEffort{.rays = 256,
 /// 3 would fail one seed in 18; 4 fails one in 750.
 constexpr double kStandardErrors = 4;
 
-/// What a solver without a standard error of its own may differ by, and why: relative to E, beyond
-/// the slack of the case.
+/// Allowed difference of a solver without a standard error of its own, relative to E and beyond the
+/// slack of the case, and the reason.
 struct ExactTolerance {
   std::string_view solver, scene;  ///< beginning of the case's name; the first row that fits counts
   double mean, texel_rms;
@@ -88,7 +88,7 @@ std::vector<std::string> solver_names() {
 
 class SlowExact : public testing::TestWithParam<std::string> {
  protected:
-  /// What it knows of its own error holds.
+  /// The solver's own statement of its error holds.
   void expect_within_its_error(const Measured& m, double beyond_slack) {
     const double z = beyond_slack / m.standard_error;
     EXPECT_LE(z, kStandardErrors) << m.mean << " instead of " << m.exact;

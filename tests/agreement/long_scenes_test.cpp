@@ -32,8 +32,8 @@ scene::Scene room() {
   return out;
 }
 
-/// What reaches far: a small stone, or a road under the room that lies level or climbs by one in
-/// twenty, as a mesh of its own or a part of the room's.
+/// Things that reach far: a small stone, or a road under the room that lies level or climbs by one
+/// in twenty, as a mesh of its own or a part of the room's.
 enum class Far : uint8_t { stone, road, road_of_one_mesh, climbing_road };
 
 /// The middle of the scene is `away` from the room's.
@@ -62,7 +62,7 @@ std::unique_ptr<Prepared> prepared_with_texels_of(const Prepared& alone, scene::
   out->scene = std::move(scene);
   out->atlas = alone.atlas;
   out->atlas.first_triangle = scene::first_triangles(out->scene);
-  // What the room does not have lies on no texel.
+  // Triangles that the room alone does not have lie on no texel.
   const size_t all = out->atlas.first_triangle.back();
   out->atlas.corners.resize(all, {Vec2{0, 0}, {0, 0}, {0, 0}});
   out->atlas.chart.resize(all, out->atlas.chart_count++);

@@ -20,7 +20,7 @@ namespace {
 constexpr int kResolution = 64;
 /// From 1.3 gaps inwards of the border a tenth of the light is left (luxel/transport/covers.h).
 constexpr float kInside_m = 0.01f;
-/// How far around things light is lost: somewhat more than the side of a patch.
+/// Distance around things within which light is lost: somewhat more than the side of a patch.
 constexpr float kNear_m = 0.15f;
 
 /// Errors of some texels' luminance. The square is of the solver alone: (g - a)(g - b).
@@ -73,7 +73,7 @@ struct JudgedRoom {
   }
 };
 
-/// What of covered places' light is allowed, over the mean: a texel is 0.1 m wide here, and the
+/// Allowed error of light at covered places, over the mean: a texel is 0.1 m wide here, and the
 /// truth of those next to the border is 0.02.
 constexpr double kCovered = 0.03;
 
@@ -85,8 +85,8 @@ void expect_right(const Parts& parts, double near_bias, double open_rms) {
   EXPECT_LT(parts.open.rms_over(parts.mean), open_rms);
 }
 
-/// What a solver states holds, as far as the judge can tell: its noise of 256 paths, some 0.03 of
-/// the mean per texel, leaves an uncertainty of 0.03 / 2500^(1/4) = 0.004 in a root mean square.
+/// The stated error holds, as far as the judge can tell: its noise of 256 paths, some 0.03 of the
+/// mean per texel, leaves an uncertainty of 0.03 / 2500^(1/4) = 0.004 in a root mean square.
 void expect_true(double stated, const Parts& parts) {
   EXPECT_GT(stated + 0.004, parts.open.rms_over(parts.mean));
   EXPECT_LT(stated, 0.12) << "a statement that says nothing";
@@ -96,7 +96,7 @@ std::string name_of(const testing::TestParamInfo<test::Thin>& thin) {
   constexpr std::array kNames{"Sheet", "DoubleSidedSheet", "Box"};
   return kNames[size_t(thin.param)];
 }
-/// What double-sided sheets show, one-sided ones do as well.
+/// One-sided sheets are left out: they show the same as double-sided ones.
 constexpr std::array kThin{test::Thin::double_sided_sheet, test::Thin::box};
 
 class SlowNearContacts : public testing::TestWithParam<test::Thin> {};

@@ -23,7 +23,7 @@ std::string bake(const std::filesystem::path& out) {
          " --resolution 8 --samples 4 --direct-samples 2 --threads 1 --formats exr,hdr";
 }
 
-/// How often each call comes in a bake without faults, and what it leaves.
+/// Counts of calls in a bake without faults, and the files that it leaves.
 struct Whole {
   std::map<std::string, long> calls;
   std::set<std::string> files;
@@ -80,7 +80,7 @@ TEST(Faults, OfFilesEndWithASentenceOrARightResult) {
     for (long n = 1; n <= whole.calls.at(call); ++n)
       expect_an_end(fmt::format("{}:{}:ENOSPC", call, n), more, whole, s);
   }
-  // What is interrupted or cut short goes on.
+  // A call that is interrupted or cut short goes on.
   for (const char* call : {"write", "pread"})
     for (long n = 1; n <= whole.calls.at(call); ++n)
       for (const char* how : {"EINTR", "SHORT"}) {

@@ -42,8 +42,8 @@ constexpr const char* kNames[kCalls] = {"write", "pwrite",    "fsync", "rename",
                                         "open",  "ftruncate", "read",  "pread",  "new"};
 constexpr int kShort = -1;
 
-/// What the environment asks for, and how often each call came. Plain memory, since it is used
-/// before main() begins.
+/// The fault that the environment asks for, and counts of calls so far. Plain memory, since it is
+/// used before main() begins.
 struct Plan {
   int call = kCalls;
   long number = 0;

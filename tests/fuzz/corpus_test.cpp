@@ -46,7 +46,7 @@ size_t triangles_in(std::vector<std::byte> file, const std::string& name) {
   return imported ? scene::first_triangles(imported->scene).back() : 0;
 }
 
-/// What targets wrap around their inputs is right: else decoders would never be reached.
+/// Wrappers that targets put around their inputs are right: else decoders would never be reached.
 TEST(Wrapped, SeedsAreRead) {
   EXPECT_EQ(triangles_in(binary_fbx(seed_bytes("fbx_binary/square.fbx")), "a.fbx"), 2u);
   for (const char* seed : {"edgebreaker-0", "edgebreaker-7", "sequential-0", "sequential-7"}) {

@@ -46,7 +46,7 @@ struct Words {
   }
 };
 
-/// What stands before the closing bracket, or the end.
+/// The nodes before the closing bracket, or the end.
 std::vector<Node> read_block(Words& words, int depth) {
   std::vector<Node> out;
   for (std::string_view word; !(word = words.next()).empty() && word != "}";) {

@@ -1,4 +1,4 @@
-// What the fuzzers' targets share.
+// Helpers that the fuzzers' targets share.
 #pragma once
 
 #include <cstddef>

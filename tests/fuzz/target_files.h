@@ -28,7 +28,7 @@ void run_kept_bake(std::span<const std::byte> input);
 void run_light_script(std::span<const std::byte> input);
 /// A bake.json.
 void run_settings(std::span<const std::byte> input);
-/// What follows `luxel bake` for each option that has a notation of its own: a line each.
+/// Options of `luxel bake` that have a notation of their own: a line each.
 void run_option_texts(std::span<const std::byte> input);
 
 }  // namespace luxel::fuzz

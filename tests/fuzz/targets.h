@@ -1,4 +1,4 @@
-// What the fuzzers feed: one function for each kind of file that luxel reads. Anything may come; a
+// The fuzzers' targets: one function for each kind of file that luxel reads. Anything may come; a
 // target returns, or the process ends and the input is a finding.
 #pragma once
 

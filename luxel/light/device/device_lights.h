@@ -1,4 +1,4 @@
-// What shines in a scene, in a device's memory.
+// The lights of a scene in a device's memory.
 #pragma once
 
 #include "luxel/gpu/commands.h"
@@ -17,8 +17,8 @@ struct DeviceLights {
   gpu::Buffer setup;
 };
 
-/// Whether a device knows all that it must of a scene's lights: not those with a texture, some of
-/// which light goes through.
+/// True: a device can compute the light of all of the scene's lights. Textured lights that let
+/// light through are beyond it.
 bool device_knows(const scene::Scene& scene, const Lights& lights);
 
 /// Sends the lights of `scene` to the device, of which it knows all. Errors: no memory, the device

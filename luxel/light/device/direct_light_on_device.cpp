@@ -51,7 +51,7 @@ enum class DirectStep : uint8_t {
 // so many.
 static_assert(kMaxAllTriangles == 32 && kMaxAllPunctual == 64 && DrawParams{}.max_cut == 16);
 
-/// What a scene's lights need.
+/// Steps that a scene's lights need.
 std::vector<DirectStep> steps_of(const Lights& lights) {
   std::vector<DirectStep> out;
   if (!lights.triangles.empty())

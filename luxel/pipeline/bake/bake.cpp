@@ -90,7 +90,7 @@ nlohmann::json identity_of(const BakeSettings& settings) {
   return bake_identity(settings_of_checkpoint(settings));
 }
 
-/// What a bake of one process, or a team's first member, makes and writes.
+/// Makes and writes a bake, as its only process or as a team's first member.
 Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progress,
                                   const BakeDevice* device, Team* team) {
   OutputFolder folder(settings.output);
@@ -116,7 +116,7 @@ Result<nlohmann::json> bake_whole(const BakeSettings& settings, Progress& progre
   return std::move(finished.report);
 }
 
-/// What a member of a team does that is not the first.
+/// Helps to bake, as any member of a team but the first.
 Result<nlohmann::json> help_to_bake(const BakeSettings& settings, Progress& progress, Team& team) {
   LUXEL_TRY_STATUS(check_same_settings(&team, identity_of(settings), progress));
   Checkpoint checkpoint(settings, settings_of_checkpoint(settings), to_json(settings), &team);

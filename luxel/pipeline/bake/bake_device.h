@@ -1,4 +1,4 @@
-// What bakes on a graphics device cannot be asked for.
+// Settings that bakes on a graphics device cannot have.
 #pragma once
 
 #include <string>

@@ -92,7 +92,7 @@ std::vector<OutputFile> picture_files(std::span<const image::Image8> pages, std:
   return files;
 }
 
-/// What takes longest to encode.
+/// Outputs that take longest to encode.
 struct Encoded {
   Result<LightmapFiles> lightmap;
   Result<std::vector<std::byte>> glb;

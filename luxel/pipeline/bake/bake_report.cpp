@@ -52,7 +52,7 @@ size_t count_backs(const scene::Scene& scene) {
   return out / 2;
 }
 
-/// How sure the light is, and where it is least so.
+/// Errors and samples of the light, and the place of its largest error.
 nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
   const std::vector<float>& errors = bake.light.errors;
   const std::vector<uint16_t>& samples = bake.light.samples;

@@ -1,4 +1,4 @@
-// What bake.json says of a bake.
+// The report on a bake in bake.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

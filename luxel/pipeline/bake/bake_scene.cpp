@@ -92,7 +92,7 @@ Status add_sharing_error(const BakeSettings& settings, const light::TexelScene& 
   return {};
 }
 
-/// What light needs besides a bake's scene and texels.
+/// Structures that light needs besides a bake's scene and texels.
 struct Ready {
   trace::RayTracer tracer;
   transport::Elements elements;
@@ -126,7 +126,7 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
       .one_page = settings.pages.mode == atlas::PageMode::fixed && settings.pages.count == 1};
   std::vector<std::string> about_uv1;
   LUXEL_TRY(params.uv, settle_uv(scene, params, about_uv1, progress));
-  // What is not kept does not say how large a lightmap is to be.
+  // A layout that is not kept must not decide the resolution of the lightmap.
   BakeSettings of_layout = settings;
   of_layout.uv = params.uv;
   if (params.uv != settings.uv && settled.chosen && settled.chosen->uv1_area > 0) {
@@ -199,7 +199,7 @@ uint64_t digest_of_layout(const atlas::Atlas& atlas, const atlas::TexelMap& map,
   return digest.value();
 }
 
-/// What a solver tells of a bake that is watched.
+/// Connects a solver's callbacks with those of a bake's watcher.
 SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& in) {
   SolveObserver out;
   out.on_estimate = [&](const light::LightEstimate& e) { watcher.on_estimate(in, e); };

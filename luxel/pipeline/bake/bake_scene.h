@@ -26,7 +26,7 @@ namespace luxel::pipeline {
 class BakeCache;
 class Checkpoint;
 
-/// What outlives a bake, or outlived the one before; null where there is nothing of the kind.
+/// Objects that outlive a bake, or outlived the one before; null where there is none.
 struct Keepers {
   Checkpoint* checkpoint = nullptr;  ///< a bake on a device keeps nothing there
   BakeCache* cache = nullptr;
@@ -65,7 +65,7 @@ struct Bake {
 /// stitched. The bake goes on when it returns.
 using OnBakeEstimate = std::function<void(const light::TexelScene&, const light::LightEstimate&)>;
 
-/// Who watches a bake; nothing where nobody does.
+/// Callbacks to those who watch a bake; empty: nobody watches.
 struct BakeObserver {
   /// Gets the scene when it is read, its outside light added, and not yet laid out.
   std::function<void(const scene::Scene&)> on_read{};

@@ -49,7 +49,7 @@ TEST(BakeScene, BakesASceneInMemory) {
   EXPECT_GT(bake->preview.width, 0);
 }
 
-// What a file's reader would have refused is refused here, too, by the scene's name.
+// A scene that a file's reader would refuse is refused here, too, by the scene's name.
 TEST(BakeScene, RefusesABrokenScene) {
   scene::Scene broken = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
   broken.name = "mine";

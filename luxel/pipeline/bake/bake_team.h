@@ -19,8 +19,8 @@ Status check_team(const Team* team, const BakeSettings& settings, bool has_devic
 /// `identity` has (bake_identity()); another member gives up.
 Status check_same_settings(Team* team, const nlohmann::json& identity, Progress& progress);
 
-/// What kept other members of a team from keeping finished parts, each with its number; `own` is
-/// what kept this one, or empty. Errors: another member gives up.
+/// Messages of other members that could not keep finished parts, each with the member's number;
+/// `own` is this member's message, or empty. Errors: another member gives up.
 Result<std::vector<std::string>> failures_of_others(Team* team, const std::string& own,
                                                     Progress& progress);
 

@@ -1,4 +1,4 @@
-// What `luxel bake` left in a folder, for commands that build on it.
+// The files that `luxel bake` left in a folder, for commands that build on it.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace luxel::pipeline {
 
-/// What a bake's folder has for each page of its atlas.
+/// Lightmaps of a bake's folder, one for each page of its atlas.
 struct LightmapPages {
   std::vector<image::Image> pictures;
   std::vector<size_t> of_material;  ///< index into pictures

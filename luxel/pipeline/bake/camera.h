@@ -27,8 +27,8 @@ struct CameraChoice {
 /// The words of --view, with "or" before the last.
 std::string viewpoint_names();
 
-/// Whether `view` is empty, a word of --view or a camera of the scene. Errors: it is none of these;
-/// `file` is what messages call the scene.
+/// Ok where `view` is empty, a word of --view or a camera of the scene; else an error, which calls
+/// the scene `file`.
 Status check_view(const std::string& view, const scene::Scene& scene, const std::string& file);
 
 /// The hits of a coarse grid of rays: first of all, and when the backs of one-sided materials are

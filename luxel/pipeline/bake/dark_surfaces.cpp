@@ -12,7 +12,7 @@ constexpr double kWorthSaying = 0.2;
 /// Light below this part of the mean is none: what stitching and refilling spread is more.
 constexpr double kNoLight = 1e-6;
 
-/// Whether all light of a scene comes from its surroundings and from suns.
+/// All light of a scene comes from its surroundings and from suns.
 bool is_lit_from_outside(const scene::Scene& scene) {
   const bool lamps = std::ranges::any_of(scene.lights, [](const scene::PunctualLight& light) {
     return light.kind != scene::PunctualLight::Kind::directional &&

@@ -1,5 +1,5 @@
-// What a bake with --layers does besides: the repairs of the lightmap, made for each layer, and its
-// files.
+// Steps of a bake with --layers: the lightmap's repairs, made for each layer, and the files of
+// layers.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// What stands beside a lightmap for normal maps and for things that move: how light changes with
-// the normal, and probes in the air.
+// Companions of a lightmap for normal maps and for things that move: how light changes with the
+// normal, and probes in the air.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

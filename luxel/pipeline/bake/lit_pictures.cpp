@@ -19,7 +19,7 @@ namespace {
 constexpr int kPointsAcross = 4;
 /// The part of the textured area whose textures keep their pixels.
 constexpr double kSharpPart = 0.9;
-/// What a pixel takes while its picture is made: texel and number in the map, colour and alpha of
+/// Memory of a pixel while its picture is made: texel and number in the map, colour and alpha of
 /// the texel, four floats of each in the page, and the 8-bit picture.
 constexpr uint64_t kBytesPerPixel = 24 + 4 + 24 + 32 + 8;
 
@@ -58,7 +58,7 @@ atlas::Atlas magnified(const atlas::Atlas& atlas, int scale) {
   return out;
 }
 
-/// What is seen at a surface point.
+/// Light and opacity seen at a surface point.
 struct Seen {
   Rgb radiance{};
   float alpha = 1;

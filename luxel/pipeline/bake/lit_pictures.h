@@ -1,4 +1,4 @@
-// What surfaces send to the eye, on the lightmap's charts: for viewers that know no lightmap.
+// Light that surfaces send to the eye, on the lightmap's charts: for viewers that know no lightmap.
 #pragma once
 
 #include "luxel/base/progress.h"

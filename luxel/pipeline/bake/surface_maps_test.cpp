@@ -70,8 +70,8 @@ double corner_factor(double a, double b, double c) {
   return (std::atan(1 / y) - y / r * std::atan(1 / r)) / (2 * kPiDouble);
 }
 
-// What is open is 1 - the form factor of the wall. 256 rays, which the Sobol sequence spreads:
-// their error is below 0.01 in nearly all texels; texels of 9 cm hold means over them.
+// The open share is 1 - the form factor of the wall. With 256 rays, spread by the Sobol sequence,
+// the error is below 0.01 in nearly all texels. Texels of 9 cm hold means over their area.
 TEST(AmbientOcclusion, BesideAWallIsOneLessItsFormFactor) {
   BakeSettings settings = few_rays(64);
   settings.occlusion_distance_m = INFINITY;

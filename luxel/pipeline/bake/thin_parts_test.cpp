@@ -101,7 +101,7 @@ TEST(ThinParts, ShowLightOfTheirOwn) {
   EXPECT_EQ(wrong, 0u) << looked_at;
 }
 
-/// What is said of a resolution.
+/// The message about the resolution that these settings lead to.
 std::string said_of(BakeSettings settings) {
   scene::Scene scene = facade();
   Progress progress;

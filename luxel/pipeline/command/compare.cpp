@@ -41,7 +41,7 @@ image::Image stacked(const std::vector<Picture>& pages) {
   return out;
 }
 
-/// What a file shows, or what all lightmaps of a folder show.
+/// The picture in a file, or all lightmaps of a folder in one picture.
 Result<Picture> read_subject(const fs::path& path) {
   LUXEL_TRY(const std::vector<fs::path> files, picture_files(path));
   std::vector<Picture> pages;

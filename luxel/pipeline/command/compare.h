@@ -18,14 +18,14 @@
 
 namespace luxel::pipeline {
 
-/// What `luxel compare` is asked for.
+/// Settings of `luxel compare`.
 struct CompareSettings {
   std::filesystem::path a, b;                   ///< files, or folders of bakes; b is the reference
   std::optional<std::filesystem::path> report;  ///< folder for report.html
   std::optional<double> exposure;               ///< for the display values; unset: chosen from b
 };
 
-/// How far `a` is from `b`.
+/// Differences of `a` from `b`.
 struct Compared {
   image::Difference difference;         ///< of linear light
   double psnr_db = 0;                   ///< 8-bit pictures: of display values, peak 255
@@ -74,7 +74,7 @@ struct Limit {
   size_t measure = 0;
   double most = 0;
 };
-/// Whether the measure is at most as large as its limit.
+/// The measure is at most as large as its limit.
 bool holds(const Limit& limit, const Compared& compared);
 
 /// One line: "pass: FLIP 0.01 (at most 0.05)", or the most important measures where nothing was

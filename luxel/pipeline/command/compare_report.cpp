@@ -36,7 +36,7 @@ double round_up(double value) {
   return 10 * unit;
 }
 
-/// What a black reference leaves undefined.
+/// Stands for numbers that a black reference leaves undefined.
 constexpr const char* kUndefined = "—";
 
 std::string percent(double share) {

@@ -154,8 +154,8 @@ std::vector<size_t> chosen(uint32_t only, size_t count) {
   return all;
 }
 
-/// Whether every row sums to 1 within 4 standard errors of the sum (a share S of n rays or pixels),
-/// or within the sum of its estimated errors, but not closer than 1e-4.
+/// True where every row sums to 1 within 4 standard errors of the sum (a share S of n rays or
+/// pixels), or within the sum of its estimated errors, but not closer than 1e-4.
 bool is_closed(const FactorSettings& s, const FactorReport& r) {
   const viewfactor::SampledParams params = sampled_params(s);
   const double rays =

@@ -15,7 +15,7 @@
 
 namespace luxel::pipeline {
 
-/// What `luxel factors` is asked for; unset values have the defaults named here.
+/// Settings of `luxel factors`; unset values have the defaults named here.
 struct FactorSettings {
   std::filesystem::path scene;
   std::filesystem::path output;     ///< a .csv; empty: nothing is written

@@ -150,7 +150,7 @@ Result<LightScript::MovingLight> light_of(const Node& node) {
   constexpr std::array<std::string_view, 7> known{
       "kind", "intensity", "position", "direction", "range_m", "inner_cone_deg", "outer_cone_deg"};
   LUXEL_TRY_STATUS(only_fields(node, known, "a light, as {\"kind\": \"point\", ...}"));
-  // What may be left out.
+  // Defaults of members that may be left out.
   LightScript::MovingLight moving;
   moving.position.keys = {{0, {}}}, moving.direction.keys = {{0, {0, -1, 0}}};
   moving.intensity.keys = {{0, {1, 1, 1}}};

@@ -1,4 +1,4 @@
-// How lights move: the file that `luxel relight --play` follows (docs/method/relight.md describes
+// Motion of lights: the file that `luxel relight --play` follows (docs/method/relight.md describes
 // it).
 #pragma once
 

@@ -130,7 +130,7 @@ TEST(Tracks, MoveLightsAndTurnThem) {
   EXPECT_FLOAT_EQ(length(late[0].direction), 1);
 }
 
-/// What is wrong, and what the sentence must hold.
+/// A script with a mistake, and the place and words that the message must hold.
 struct Wrong {
   std::string text, where, what;
 };

@@ -43,7 +43,7 @@ Result<std::unique_ptr<LitBake>> read_lit_bake(const std::filesystem::path& scen
 /// E of a bake's lightmap at a point of its scene.
 Rgb lightmap_of(const LitBake& bake, const scene::SurfacePoint& p);
 
-/// How many estimates of E are made at a place, and from how many rays each.
+/// Number of estimates of E at a place, and of rays per estimate.
 struct PlacesParams {
   int estimates = 16;       ///< independent ones; at least 2
   int samples = 64;         ///< rays of each

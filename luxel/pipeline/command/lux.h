@@ -14,7 +14,7 @@
 
 namespace luxel::pipeline {
 
-/// What `luxel lux` is asked for.
+/// Settings of `luxel lux`.
 struct LuxSettings {
   std::filesystem::path scene;
   std::filesystem::path from;                  ///< folder of a bake

@@ -95,7 +95,7 @@ void draw_wall(Image8& picture, double x0, double y0, double x1, double y1) {
   }
 }
 
-/// What the plane at height y cuts of the scene's triangles.
+/// Draws the lines in which the plane at height y cuts the scene's triangles.
 void draw_walls(const scene::Scene& scene, const PlanView& view, double y, Image8& picture) {
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];

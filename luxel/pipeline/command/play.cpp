@@ -27,7 +27,7 @@ namespace {
 /// As many rays along a pixel's side as make edges smooth.
 constexpr int kRaysPerAxis = 2;
 
-/// What is drawn.
+/// The scene of the frames, and the camera that sees it.
 struct View {
   scene::Scene scene;  ///< of the file; its materials glow as the script says
   std::optional<trace::RayTracer> tracer;
@@ -46,7 +46,7 @@ class PlaceLight {
       count_ += scene.meshes[instance.mesh].positions.size();
     }
   }
-  /// Whether the file's vertices are those of its scene.
+  /// False: the file has another number of vertices than its scene.
   bool fits() const {
     return target_.kind != matrix::Target::Kind::vertices || target_.position.size() == count_;
   }
@@ -150,7 +150,7 @@ Status check_names(const LightScript& script, const matrix::RelightData& data,
   return {};
 }
 
-/// What cameras see of glowing surfaces and of the sky.
+/// Sets the light of glowing surfaces and of the sky, as cameras see them.
 void show_lights(const LightScript& script, const FrameLights& lights, double time_s, View& view) {
   view.scene.background = lights.background;
   for (const LightScript::Glow& glow : script.glows)

@@ -10,7 +10,7 @@
 
 namespace luxel::pipeline {
 
-/// What `luxel relight --play` is asked for.
+/// Settings of `luxel relight --play`.
 struct PlaySettings {
   std::filesystem::path lxr;
   std::filesystem::path script;  ///< a light script (luxel/pipeline/command/light_script.h)
@@ -18,11 +18,11 @@ struct PlaySettings {
   int threads = 0;               ///< 0: all cores
 };
 
-/// What a frame took.
+/// A frame's time in the script, and the durations of its steps.
 struct FrameTimes {
   double time_s = 0;  ///< in the script
   double direct_ms = 0, bounces_ms = 0, places_ms = 0, draw_ms = 0;
-  /// What the relighter took, without drawing [ms].
+  /// Duration of the relighter's work, without drawing [ms].
   double update_ms() const { return direct_ms + bounces_ms + places_ms; }
 };
 

@@ -16,14 +16,14 @@
 
 namespace luxel::pipeline {
 
-/// How the light at the point is found.
+/// Method that finds the light at the point.
 enum class ProbeMethod {
   paths,         ///< paths from the point, until they tell it well enough
   bake,          ///< rays from the point that end on the lightmaps of a bake
   hierarchical,  ///< closed forms of all faces that the point sees, in a scene that is solved first
 };
 
-/// What `luxel probe` is asked for.
+/// Settings of `luxel probe`.
 struct ProbeSettings {
   std::filesystem::path scene;
   std::filesystem::path from;  ///< folder of a bake, of ProbeMethod::bake
@@ -54,7 +54,7 @@ struct ProbedSource {
   Rgb irradiance;                 ///< what it brings [W/m^2]
 };
 
-/// What is known of the light at a point of a surface, or in the air.
+/// Light at a point of a surface, or in the air, with its errors and sources.
 struct Probed {
   std::string name, material;  ///< of the surface; empty in the air
   DVec3 position{};            ///< in the world of the file

@@ -72,7 +72,7 @@ Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solut
   return write_file_atomically(s.output, image::encode_png(display::contact_sheet(tiles)));
 }
 
-/// Of the time that is left, what paths have to find the error of what the faces bring.
+/// Share of the remaining time in which paths find the error of the faces' light.
 constexpr double kPathsShare = 0.25;
 constexpr int kMostPathRounds = 10;
 

@@ -64,9 +64,9 @@ class Rounds {
   bool is_known() const {
     return double(error(3)) <= settings_.max_error * double(luminance(mean()));
   }
-  /// Whether another round is wanted, and there is time for it, which takes twice the last. Rounds
-  /// that end because their light looks sure by chance are too sure of it: so one more round, with
-  /// most of all paths, has its say.
+  /// True: another round is wanted, and the time left is enough for it, twice that of the last.
+  /// Light may look sure by chance, and rounds that end then are too sure of it. So one more round,
+  /// with most of all paths, must confirm it.
   bool goes_on(double last_round_s) const {
     const double left = settings_.time_budget_s - seconds_since(start_);
     return !(is_known() && was_known_) && count_ < settings_.most_rounds && left > 2 * last_round_s;
@@ -163,7 +163,7 @@ std::vector<ProbedSource> sources_of(const scene::Scene& scene, const Look& look
   return out;
 }
 
-/// What no source brings; not below 0 where noise would make it so.
+/// Light that comes from none of the sources; not below 0 where noise would make it so.
 void set_rest(Probed& out) {
   Rgb rest = out.irradiance;
   for (const ProbedSource& source : out.sources) rest = rest - source.irradiance;

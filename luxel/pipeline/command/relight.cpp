@@ -50,7 +50,7 @@ Result<matrix::CodecKind> codec_of(const std::string& name) {
               codec_names());
 }
 
-/// Whether there was a map, which is an even background now.
+/// Turns the environment map into an even background. False: there was no map.
 bool flatten_sky(scene::Scene& scene) {
   if (scene.environment.empty()) return false;
   scene.background += scene::horizontal_irradiance(scene.environment) * (1 / kPi);

@@ -20,7 +20,7 @@ inline matrix::MatrixParams relight_matrix() {
   return params;
 }
 
-/// What `luxel relight` is asked for.
+/// Settings of `luxel relight`.
 struct RelightSettings {
   std::filesystem::path scene;
   std::filesystem::path output;   ///< .lxr

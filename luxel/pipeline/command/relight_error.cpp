@@ -25,7 +25,7 @@ constexpr uint64_t kLamps = 4;
 /// times that in 2 % (luxel bench stated --only relight).
 constexpr double kMissed = 1.4;
 
-/// What is compared.
+/// The scene and places at which light is compared.
 struct Check {
   const scene::Scene& scene;     ///< with the lights to try
   const scene::Scene& punctual;  ///< its point, spot and directional lights alone
@@ -41,7 +41,7 @@ int paths_to_check(size_t patches, int rays_per_patch) {
   return int(std::clamp<uint64_t>(rays / (7 * kPlaces), kLeastPaths, kMostPaths));
 }
 
-/// What remains when only the punctual lights shine.
+/// The scene lit by its punctual lights alone.
 scene::Scene punctual_of(scene::Scene scene) {
   for (scene::Material& m : scene.materials) m.emission = {};
   scene.background = {}, scene.environment = {};
@@ -93,7 +93,7 @@ Result<double> error_of(const Check& check, std::span<const Rgb> got, int bounce
   return relative_error(got, a, b);
 }
 
-/// What two independent answers of the path tracer say of light.
+/// Error of `got` by two independent answers of the path tracer.
 IndirectError error_between(std::span<const Rgb> got, const reference::TexelPaths& a,
                             const reference::TexelPaths& b) {
   IndirectError out;
@@ -144,7 +144,7 @@ CheckedTarget with_places(matrix::Target target, const transport::Elements& plac
 Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& tracer,
                              size_t own_places, int rays_per_patch, uint64_t seed,
                              matrix::RelightData& data, Progress& progress) {
-  // What the file's player will say of the checked places.
+  // The relighter of the file's player, which lights the checked places.
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(data, {}));
   const matrix::Target all = data.target;
   keep_own(own_places, data.target);

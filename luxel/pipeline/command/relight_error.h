@@ -1,4 +1,4 @@
-// How far a relighter's light is from the truth.
+// Error of a relighter's light against the truth.
 #pragma once
 
 #include "luxel/base/progress.h"

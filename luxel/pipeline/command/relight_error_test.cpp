@@ -1,4 +1,4 @@
-// How far light is off, where it is known by how much.
+// Measured errors of light that is off by a known amount.
 #include "luxel/pipeline/command/relight_error.h"
 
 #include <gtest/gtest.h>

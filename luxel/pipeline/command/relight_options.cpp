@@ -37,7 +37,7 @@ LxrOptions target_options() {
   };
 }
 
-/// How light is carried, and how the file is made.
+/// Options for the transport of light, and for making the file.
 LxrOptions transport_options() {
   return {
       LxrRows::text("--codec", &RelightSettings::codec, any_text, json_of_text,

@@ -17,7 +17,7 @@ namespace {
 constexpr int kLines = 240;
 /// Surfaces along a vertical line that are looked at.
 constexpr int kMostSurfaces = 64;
-/// What is steeper is no floor: 45 degrees.
+/// Steeper surfaces are no floors: 45 degrees.
 constexpr float kUpwards = 0.7071f;
 /// Heights that differ by less belong to one floor [m]: rugs, thresholds, ramps.
 constexpr double kOneFloor_m = 0.1;
@@ -25,7 +25,7 @@ constexpr double kOneFloor_m = 0.1;
 constexpr double kStorey_m = 1.8;
 /// A floor has at least this part of the largest one's area.
 constexpr double kLeastArea = 0.1;
-/// How far under the ceiling rooms are parted [m].
+/// Rooms are parted so far below the ceiling [m].
 constexpr float kUnderCeiling_m = 0.15f;
 /// Ceilings of neighbours in a room differ by this at most [m], or by a slope.
 constexpr float kLintel_m = 0.3f, kSlope = 0.5f;
@@ -61,7 +61,7 @@ void go_down(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 fro
   }
 }
 
-/// How far the first and the last surface of a line lie within its ends.
+/// Margin between the ends of a line and its first and last surface [m].
 float slack_of(const Box3& box) {
   return kOnBehind * scene::rounding_m(max(-box.lower, box.upper), 0);
 }
@@ -71,7 +71,7 @@ struct Survey {
   double cell_m2 = 0, line_m = 0;
 };
 
-/// What vertical lines over the scene's bounds meet.
+/// Surfaces that vertical lines over the scene's bounds meet.
 Survey survey(const scene::Scene& scene, const trace::RayTracer& tracer, double plane_m,
               bool needs_ceiling) {
   const Box3 box = scene::world_bounds(scene);

@@ -34,7 +34,7 @@ struct Lit {
   LightMesh mesh;  ///< nothing where the picture needs none
 };
 
-/// What is wrong with the scene, and the overlay, go to `out`.
+/// Solves the scene, and makes its light mesh if needed. Warnings and the overlay go to `out`.
 Result<Lit> light_up(const Subject& subject, const RenderSettings& s, bool needs_mesh,
                      Rendered& out, Progress& progress) {
   Lit lit;
@@ -66,7 +66,7 @@ trace::Ray sample_ray(const trace::CameraRays& camera, int width, size_t pixel, 
                         float(y) + (float(k / kLerpRaysPerAxis) + 0.5f) / kLerpRaysPerAxis);
 }
 
-/// What the rays of all pixels meet, pixel after pixel.
+/// Hits of all pixels' rays, pixel after pixel.
 std::vector<trace::Hit> hits_of(const Subject& subject, const RenderSettings& s) {
   const trace::CameraRays camera(subject.camera, s.width, s.height);
   constexpr int n = kLerpRaysPerAxis;

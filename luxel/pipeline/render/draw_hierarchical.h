@@ -16,7 +16,7 @@ display::QuadraticMesh quadratic_mesh(const scene::Scene& scene,
 Result<image::Image> draw_flat(const Subject&, const RenderSettings&, Rendered&, Progress&);
 /// Exact irradiance at the corners of elements, linear between them.
 Result<image::Image> draw_gouraud(const Subject&, const RenderSettings&, Rendered&, Progress&);
-/// What draw_gouraud() shows, with elements cut along discontinuities.
+/// draw_gouraud() with elements cut along discontinuities.
 Result<image::Image> draw_gouraud_disc(const Subject&, const RenderSettings&, Rendered&, Progress&);
 /// The interpolants at the middle of each pixel, whose triangles are filled row by row: what a
 /// viewer draws.

@@ -1,4 +1,4 @@
-// How bright a picture is shown, as people ask for it.
+// Exposure of a picture, in the terms in which people ask for it.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// What a hierarchical solution is made of, as lines over its pictures. [Hardt96, appendix B.4]
+// Parts of a hierarchical solution (elements, links, ...), as lines over its pictures. [Hardt96,
+// appendix B.4]
 #pragma once
 
 #include <limits>
@@ -18,14 +19,14 @@ std::string overlay_names();
 /// Names with commas between them. Errors: a name that there is not.
 Result<std::vector<std::string>> parse_overlays(std::string_view text);
 
-/// Whether any of these shows the light mesh.
+/// True where any of these shows the light mesh.
 bool overlay_needs_mesh(std::span<const std::string> names);
 
 /// Edges of elements, grey: of leaves, and of what is divided at this depth below roots, which are
 /// at 0.
 std::vector<display::Line> mesh_lines(const hierarchical::Solution& solution,
                                       int depth = std::numeric_limits<int>::max());
-/// What links between elements are looked at.
+/// Links between elements to look at.
 struct LinkChoice {
   bool whole = true, partial = true;  ///< nothing, or something, stands between
   size_t most = 300;                  ///< the strongest

@@ -48,7 +48,7 @@ float exposure_for(const Technique& technique, const RenderSettings& s,
   return exposure_factor(s.exposure.value_or(technique.is_light ? Exposure{} : as_it_is), picture);
 }
 
-/// Whether a picture shows surfaces, and all of them black.
+/// True: the picture shows surfaces, and all of them are black.
 bool is_black(const image::Image& picture) {
   bool found = false;
   for (int y = 0; y < picture.height; ++y)

@@ -25,7 +25,8 @@ inline constexpr std::string_view kAllTechniques = "all";
 
 inline constexpr int kDefaultPathSamples = 64;
 
-/// What is not set has a default; what is set and means nothing to the technique is an error.
+/// Unset members have defaults. A member that is set and means nothing to the technique is an
+/// error.
 struct RenderSettings {
   std::filesystem::path scene;   ///< what is drawn; for a bake its cameras and background
   std::filesystem::path from;    ///< folder of a bake: baked.glb and lightmap.exr are read
@@ -50,7 +51,7 @@ struct RenderSettings {
   std::vector<std::string> overlays;  ///< the same; names of luxel/pipeline/render/overlays.h
 };
 
-/// What was drawn, and how.
+/// Report on a drawn picture.
 struct Rendered {
   int width = 0, height = 0;
   float exposure = 1;  ///< the factor that light was shown with

@@ -37,7 +37,7 @@ std::string users_of(bool Technique::*feature) {
   return names;
 }
 
-/// What a technique would not look at must not be given: its user expects something of it.
+/// Refuses settings that the technique would not look at: their user expects something of them.
 Status check_used(const RenderSettings& s, const Technique& technique) {
   struct Option {
     std::string name;

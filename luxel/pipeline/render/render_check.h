@@ -1,4 +1,4 @@
-// Whether the settings of a picture make sense together.
+// Checks that the settings of a picture make sense together.
 #pragma once
 
 #include "luxel/base/result.h"

@@ -16,7 +16,7 @@
 
 namespace luxel::pipeline {
 
-/// What every technique draws.
+/// Scene and camera that every technique draws.
 struct Subject {
   const scene::Scene& scene;  ///< with light from outside
   const trace::RayTracer& tracer;

@@ -96,7 +96,8 @@ void BakeCache::open(const scene::Scene& scene, Progress& progress) {
   begin(progress);
 }
 
-/// Whether there is something to build on; else note_ says why not, unless there is no cache.
+/// True where the cache holds a bake to build on. Else note_ says why not, unless there is no
+/// cache.
 bool BakeCache::find(const scene::Scene& scene) {
   const fs::path file = light_file(folder_);
   std::error_code ignored;
@@ -116,7 +117,7 @@ bool BakeCache::find(const scene::Scene& scene) {
   found_ = read_kept(*found);
   if (!found_) return no("light.luxel is damaged");
   change_ = scene::change_between(found_->scene, state_);
-  // Whether light gets behind it decides which surfaces have light of their own on both sides.
+  // Surfaces have light of their own on both sides depending on whether light gets behind them.
   for (const uint32_t m : change_.reshaped)
     if (scene.materials[m].double_sided)
       change_.beyond = fmt::format("double-sided material '{}' transmits light differently",

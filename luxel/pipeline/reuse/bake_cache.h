@@ -31,7 +31,7 @@ class BakeCache {
   /// nothing to build on, a cache is begun.
   void open(const scene::Scene& scene, Progress& progress);
 
-  /// What the bake can build on; null: nothing, or it is not asked for.
+  /// The kept bake to build on; null: there is none, or it is not asked for.
   KeptBake* found() { return found_ ? &*found_ : nullptr; }
   /// With found(): what is different in the scene.
   const scene::SceneChange& change() const { return change_; }

@@ -86,7 +86,7 @@ std::string difference(const json& there, const json& here) {
 
 namespace {
 
-/// What differs between a file's header and the bake's; empty: nothing.
+/// Differences between a file's header and the bake's; empty: none.
 std::string difference_of(const RecordFile& file, const std::string& header) {
   return difference(json::parse(file.header(), nullptr, false), json::parse(header));
 }
@@ -174,7 +174,7 @@ Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
     params.start -= std::chrono::seconds(size_t(params.interval_s) + 1);  // from now on
   }
   parts_.emplace(std::move(params), progress, std::move(found), std::move(others));
-  // Whoever collects the files of all parts looks for one that has none, too.
+  // Those who collect the files of all parts look for the file of an empty part, too.
   return settings_.part.is_all() ? Status() : parts_->begin();
 }
 

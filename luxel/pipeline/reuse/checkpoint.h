@@ -1,4 +1,4 @@
-// What is left of a bake that was stopped or killed, for the next one to go on with.
+// Remains of a bake that was stopped or killed, for the next one to go on with.
 #pragma once
 
 #include <chrono>
@@ -15,12 +15,12 @@
 
 namespace luxel::pipeline {
 
-/// What the light of a bake depends on besides its scene: luxel's version and `settings`, those
-/// that change it (solver/bake_options.h says which).
+/// Everything but its scene that the light of a bake depends on: luxel's version, and those of the
+/// `settings` that change light (solver/bake_options.h says which).
 nlohmann::json bake_identity(const nlohmann::json& settings);
 /// That, and the scene's digests.
 nlohmann::json checkpoint_header(const nlohmann::json& settings, const scene::Scene& scene);
-/// What differs between the two, in words; empty: nothing.
+/// Differences between the two, in words; empty: none.
 std::string difference(const nlohmann::json& there, const nlohmann::json& here);
 
 /// The checkpoint of one bake: docs/method/checkpoints.md. Solvers that keep no parts have none.
@@ -43,7 +43,7 @@ class Checkpoint {
   PartStore* parts() { return parts_ ? &*parts_ : nullptr; }
   /// For bake.json; null where nothing is kept.
   nlohmann::json about() const;
-  /// Whether a file is there that takes room on the disk.
+  /// True: a file is there and takes room on the disk.
   bool has_file() const;
   /// The bake is done, or must do without: nothing of it stays, by whichever process.
   void remove();

@@ -38,7 +38,8 @@ struct Saver {
 struct Loader {
   ByteReader in;
 
-  /// How many values follow, of so many bytes at least; 0 where there are fewer.
+  /// Reads the number of values that follow, each of `bytes_each` bytes at least; 0 where there are
+  /// fewer.
   size_t count(size_t bytes_each) {
     const uint64_t n = in.get_value<uint64_t>();
     in.ok = in.ok && n <= in.bytes.size() / bytes_each;
@@ -154,7 +155,7 @@ void walk(Visit& visit, Like<light::LightLayer> auto& l) {
   visit(name), visit(lights);
 }
 
-/// What gather fills in, but for layers.
+/// Visits the members that gather fills in, but for layers.
 template <class Visit>
 void walk(Visit& visit, Like<TexelLight> auto& l) {
   visit(l.irradiance), visit(l.variance), visit(l.direct), visit(l.direct_variance);
@@ -192,7 +193,7 @@ void walk_part(Visit& visit, size_t part, Like<KeptBake> auto& k) {
   }
 }
 
-/// Whether everything per element, light and instance has as many entries as there are.
+/// Every list per element, light or instance has as many entries as there are of these.
 bool is_sound(const KeptBake& k) {
   const size_t n = k.layout.texels.size(), layers = k.layer_names.size();
   const size_t instances = k.scene.instances.size(), lights = k.scene.lights.size();
@@ -211,7 +212,7 @@ bool is_sound(const KeptBake& k) {
          k.layers.of_instance.size() == (told_apart ? instances : 0);
 }
 
-/// Whether numbers are those of something that is there: they are not looked at again.
+/// All numbers refer to things that exist, since nobody checks them again.
 bool refers_to_itself(const KeptBake& k) {
   const auto is_layer = [&](uint8_t layer) { return layer < k.layer_names.size(); };
   const auto is_layer_or_none = [&](uint8_t layer) {

@@ -1,4 +1,4 @@
-// What a bake with --keep leaves for the next bake of the same scene, besides its rays.
+// The data that a bake with --keep leaves for the next bake of the same scene, besides its rays.
 #pragma once
 
 #include <optional>
@@ -45,7 +45,7 @@ inline constexpr size_t kKeptParts = 6;
 std::vector<std::byte> bytes_of(const KeptBake& kept, size_t part);
 /// Reads a part into `kept`. False where the bytes are not those of it.
 bool read_part(std::span<const std::byte> bytes, size_t part, KeptBake& kept);
-/// Whether the parts, all of which have been read, are those of one bake.
+/// True: the parts are those of one bake. All of them have been read.
 bool is_whole(const KeptBake& kept);
 
 }  // namespace luxel::pipeline

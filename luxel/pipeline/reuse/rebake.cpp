@@ -39,7 +39,7 @@ struct Scales {
 
 bool emits(Rgb emission) { return max_component(emission) > 0; }
 
-/// What the shine of an instance is multiplied by; nothing: it shines otherwise.
+/// The factor on an instance's emission, per channel; nothing: no single factor says the change.
 std::optional<Rgb> scale_of_instance(const KeptBake& kept, const scene::SceneChange& change,
                                      const scene::Scene& scene, uint32_t instance) {
   if (std::ranges::find(change.moved, instance) != change.moved.end()) return std::nullopt;
@@ -179,7 +179,7 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   out.rounds = std::move(*rounds);
   // The rounding of float positions in a scene of this size.
   const float margin_m = 1e-4f * scene::world_bounds(in.scene).diagonal();
-  // What rays escape through may have had another colour.
+  // Surroundings, or surfaces that rays pass on their way out, may have had another colour.
   const bool seen_otherwise = change.surroundings || !change.reshaped.empty();
   out.rays.file = &rays;
   out.rays.boxes = with_margin(change.boxes, margin_m);

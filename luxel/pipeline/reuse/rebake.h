@@ -1,4 +1,4 @@
-// What a change of the scene means for the light of a bake that is kept. docs/method/rebake.md
+// The light of a kept bake after a change of the scene. docs/method/rebake.md
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace luxel::pipeline {
 
-/// How the lights of a kept bake shine now.
+/// The lights of a kept bake as they shine now.
 struct LightUpdate {
   /// Per layer, what its light is multiplied by, per channel; nothing: its lights shine otherwise
   /// than before.
@@ -21,14 +21,14 @@ struct LightUpdate {
 LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
                          const scene::Scene& scene);
 
-/// Whether the light now is a sum of what the layers had, each multiplied by something: E is linear
-/// in its sources, channel by channel, as long as nothing moves and all reflects as before.
+/// True: the light now is a sum of the layers' light, each layer times a factor. E is linear in its
+/// sources, channel by channel, as long as nothing moves and every surface reflects as before.
 bool is_sum_of_layers(const LightUpdate& update, const scene::SceneChange& change);
 /// That sum. How sure it is, relative to its value, is taken to be as before.
 TexelLight sum_of_layers(KeptBake& kept, const LightUpdate& update);
 
-/// What gather needs of the kept bake where that is not enough. `elements` are those of the map
-/// now; `layers`: those of this bake, or null. Uses `kept` up. Nothing: its rays are damaged.
+/// The kept data that gather needs where no such sum gives the light. `in` has the elements of the
+/// map now; `layers`: those of this bake, or null. Uses `kept` up. Nothing: its rays are damaged.
 std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays,
                                           const LightUpdate& update,
                                           const scene::SceneChange& change,

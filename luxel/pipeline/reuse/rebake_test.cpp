@@ -53,7 +53,7 @@ scene::Scene room() {
   return scene;
 }
 
-/// What a bake of the scene says of its lights.
+/// A kept bake of the scene, without its light.
 KeptBake kept_of(const scene::Scene& scene, light::LayerMode mode) {
   KeptBake kept;
   kept.scene = scene::state_of(scene);

@@ -1,4 +1,4 @@
-// Whether the members of a team are at the same work.
+// Checks that the members of a team are at the same work.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ constexpr double kLongestCheckpoint_s = 1e6;
 
 json json_of_bounces(int bounces) { return bounces < 0 ? json("inf") : json(bounces); }
 
-/// How light is sampled, and how well.
+/// Options for the sampling of light and its quality.
 Options<S> sampling_options() {
   return {
       BakeRows::choice(
@@ -103,7 +103,7 @@ Options<S> layout_options() {
   };
 }
 
-/// What is made of the light.
+/// Options for the results that are made of the light.
 Options<S> result_options() {
   return {
       BakeRows::choice("--directional", &S::directional,
@@ -200,7 +200,7 @@ Options<S> result_options() {
   };
 }
 
-/// How the bake runs.
+/// Options for the run of the bake: memory, threads, checkpoints, parts.
 Options<S> running_options() {
   return {
       BakeRows::text(

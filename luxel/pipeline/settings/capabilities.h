@@ -1,4 +1,4 @@
-// What a solver can, and which of the options that solvers share it looks at.
+// The capabilities of a solver. They decide which of the shared options it looks at.
 #pragma once
 
 namespace luxel::pipeline {

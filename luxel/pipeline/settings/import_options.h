@@ -1,4 +1,4 @@
-// How a scene's file is read, as options of every command that reads one.
+// Options for reading a scene's file, for every command that reads one.
 #pragma once
 
 #include "luxel/import/import.h"

@@ -15,29 +15,29 @@
 
 namespace luxel::pipeline {
 
-/// What another value of an option changes. It decides what a bake can go on with or build on.
+/// Results that another value of an option changes: they decide what a bake can continue from.
 enum class Changes : uint8_t {
   light,    ///< the light itself: neither a checkpoint nor a kept bake of another value fits
   scene,    ///< the scene, and digests of the scene tell how
-  results,  ///< what is made of the light: a kept bake fits, a checkpoint does not
+  results,  ///< files made of the light: a kept bake fits, a checkpoint does not
   nothing   ///< no bit of the results: files besides, memory, threads
 };
 
-/// What an option is to its user.
+/// An option as its user sees it.
 struct OptionText {
   std::string flag;    ///< "--samples", or "--no-stitch" for a switch that turns a setting off
   std::string key;     ///< in bake.json's settings; empty: it is not there
   std::string help;    ///< a sentence without a full stop
-  std::string value;   ///< what stands for the value in --help; empty: the option takes none
-  std::string range;   ///< what is allowed, as --help says it; empty: any
+  std::string value;   ///< placeholder of the value in --help; empty: the option takes none
+  std::string range;   ///< the allowed values, as --help says them; empty: any
   std::string group;   ///< a heading in --help; empty: the first
   std::string solver;  ///< the one solver that has this option; empty: by `needs`
-  bool Capabilities::*needs = nullptr;  ///< what a solver must have to look at it; null: nothing
-  bool refused_without = false;  ///< who asks another solver for it is told so, and not ignored
+  bool Capabilities::*needs = nullptr;  ///< the solvers that look at it have this; null: all do
+  bool refused_without = false;  ///< solvers without it refuse the option, and do not ignore it
   Changes changes = Changes::light;
   bool repeats = false;               ///< may be given several times
   std::vector<std::string> not_with;  ///< flags that contradict it
-  /// Whether the text is of the option's kind at all: "abc" is no number. Range is not looked at.
+  /// True: the text is of the option's kind. "abc" is no number. The range is not checked.
   std::function<bool(std::string_view)> is_of_kind = [](std::string_view) { return true; };
 };
 
@@ -56,7 +56,7 @@ struct Option : OptionText {
   /// As --help shows it; empty: none.
   std::function<std::string(const S&)> default_text;
 
-  // What rows add to their beginning: Option::number(...).unit("METRES").key_is("probe_spacing_m").
+  // Additions to a new row: Option::number(...).unit("METRES").key_is("probe_spacing_m").
   Option key_is(std::string text) && { return key = std::move(text), std::move(*this); }
   Option unit(std::string text) && { return value = std::move(text), std::move(*this); }
   Option only(bool Capabilities::*capability) && { return needs = capability, std::move(*this); }

@@ -1,4 +1,4 @@
-// What rows of a table of options are made with. Only files that hold a table include this.
+// Makers of the rows of option tables. Only files that hold a table include this.
 #pragma once
 
 #include <charconv>
@@ -19,10 +19,10 @@ inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 /// The values that a number may have, `low` and `high` among them. Its default is always allowed.
 struct Range {
   double low = -kNoLimit, high = kNoLimit;
-  /// What a value outside is told, after the option and the value: "is not an area; give m^2 >= 0".
-  /// Empty: "is outside LOW to HIGH".
+  /// The message for a value outside, after the option and the value:
+  /// "is not an area; give m^2 >= 0". Empty: "is outside LOW to HIGH".
   std::string wrong = "";
-  /// What to do, after the sentence above.
+  /// Advice, after the sentence above.
   std::string advice = "";
   /// `low` itself lies outside: the default 0 of an option means that it was not given.
   bool above = false;
@@ -41,7 +41,7 @@ Status not_a_number(std::string_view flag, std::string_view text);
 /// The error (bad_setting) of a name that is not among those there are.
 Status unknown_name(std::string_view flag, std::string_view name, std::string_view names);
 
-/// Whether the whole of the text is a number, of any size, or nan or inf.
+/// True: the whole text is a number, of any size, or nan or inf.
 bool is_number(std::string_view text);
 /// The whole of the text as a finite number.
 template <class T>
@@ -138,8 +138,8 @@ struct Rows {
     return row;
   }
 
-  /// What has a notation of its own: `read` is Result<T>(string_view), and `print` makes JSON of a
-  /// T, from which option_text() makes what `read` understands.
+  /// An option with a notation of its own: `read` is Result<T>(string_view), and `print` makes JSON
+  /// of a T, from which option_text() makes a text that `read` understands.
   template <class Access, class Read, class Print>
   static Row text(std::string_view flag, Access access, Read read, Print print, std::string help) {
     Row row = plain(flag, std::move(help));

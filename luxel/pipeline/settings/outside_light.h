@@ -67,7 +67,7 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, 
                                                    std::string_view about_lost_lights = {},
                                                    uint64_t max_memory_bytes = 0);
 
-/// Whether add_outside_light() had to bring kDefaultSky: no file brings surroundings of its own.
+/// True: add_outside_light() brought kDefaultSky. Scene files have no surroundings of their own.
 bool is_lit_by_default_day(const OutsideLight& outside, const scene::Scene& scene);
 
 /// Why nothing is lit in a scene that has light: `what` is what stays black.

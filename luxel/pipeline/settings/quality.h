@@ -1,4 +1,4 @@
-// What `--quality` stands for.
+// The numbers that `--quality` stands for.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace luxel::pipeline {
 
-/// How well gather samples light.
+/// Gather's samples, and the denoiser.
 struct QualityNumbers {
   int samples = 0, direct_samples = 0, supersample = 0;
   bool denoise = false;

@@ -39,7 +39,7 @@ TEST(Quality, GivenNumbersWin) {
   EXPECT_FALSE(set(Quality::good, {"--no-denoise"}).denoise);
 }
 
-/// Who asks for rays gets as many shadow rays and points as fit them.
+/// 1024 rays: a quarter as many shadow rays, but at most 128, and a sixteenth as many points.
 TEST(Quality, ShadowRaysAndPointsFollowGivenSamples) {
   BakeSettings asked;
   asked.samples = 1024;
@@ -54,7 +54,7 @@ TEST(Quality, ShadowRaysAndPointsFollowGivenSamples) {
             numbers_of(Quality::good).direct_samples);
 }
 
-/// Whoever says how much light is sampled wants to see that.
+/// A user who sets the amount of samples wants to see their light as it is.
 TEST(Quality, LightOfGivenSamplesStaysAsItIs) {
   EXPECT_FALSE(set(Quality::good, {"--samples"}).denoise);
   BakeSettings asked;

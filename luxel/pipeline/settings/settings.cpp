@@ -11,7 +11,7 @@
 namespace luxel::pipeline {
 namespace {
 
-/// What one option says must not be said by another.
+/// Other options may not contradict --pages.
 Status check_pages(const BakeSettings& s) {
   const bool one = s.pages.mode == atlas::PageMode::fixed && s.pages.count == 1;
   if (one) return {};
@@ -29,7 +29,7 @@ Status check_pages(const BakeSettings& s) {
   return {};
 }
 
-/// What each light's own lightmap is not made for yet.
+/// Options that layers, a lightmap for each light, do not support yet.
 Status check_layers(const BakeSettings& s) {
   if (s.layers == light::LayerMode::none) return {};
   const char* other = s.directional != Directional::none ? "--directional"
@@ -43,7 +43,7 @@ Status check_layers(const BakeSettings& s) {
   return {};
 }
 
-/// What a bake that is kept, or built on one, does not do.
+/// Options that --keep does not support: for a bake that is kept, or built on a kept one.
 Status check_keep(const BakeSettings& s) {
   if (!s.keep) return {};
   if (s.resume)
@@ -58,7 +58,7 @@ Status check_keep(const BakeSettings& s) {
   return {};
 }
 
-/// What looks at all light at once, or keeps it.
+/// Options that look at all light at once, or keep it.
 Status check_light(const BakeSettings& s) {
   if (s.light == LightPart::all) return {};
   const char* other = s.layers != light::LayerMode::none   ? "--layers"
@@ -72,7 +72,7 @@ Status check_light(const BakeSettings& s) {
               pipeline::name_of(s.light), other);
 }
 
-/// What parts of a bake cannot have.
+/// Options that parts of a bake cannot have.
 Status check_part(const BakeSettings& s) {
   if (s.part.is_all()) return {};
   const std::string part = fmt::format("--part {}/{}", s.part.number, s.part.of);

@@ -19,10 +19,10 @@
 
 namespace luxel::pipeline {
 
-/// How a lightmap says where its light comes from; luxel/pipeline/bake/light_directions.h.
+/// The form of a lightmap's light directions; luxel/pipeline/bake/light_directions.h.
 enum class Directional : uint8_t { none, dominant, sh1 };
 
-/// Which light a lightmap holds. Direct light has met no surface since it left its source.
+/// The light that a lightmap holds. Direct light has met no surface since it left its source.
 enum class LightPart : uint8_t {
   all,
   direct,       ///< straight from lights, surfaces that shine, background and environment
@@ -33,12 +33,12 @@ enum class LightPart : uint8_t {
 /// A picture has four channels.
 inline constexpr size_t kMaxMaskedLights = 4;
 
-/// How good light is to be, as a word; luxel/pipeline/settings/quality.h has the numbers. `none`:
-/// by numbers alone.
+/// The quality of light as a word; luxel/pipeline/settings/quality.h has the numbers. `none`: by
+/// numbers alone.
 enum class Quality : uint8_t { none, draft, good, best };
 
-/// How many lightmaps a bake leaves. More than one, or not yet known how many: the scene is laid
-/// out anew.
+/// The number of lightmaps that a bake leaves. The scene is laid out anew for more than one, and
+/// for a number that is not known yet.
 struct PagesSetting {
   atlas::PageMode mode = atlas::PageMode::fixed;
   int count = 1;  ///< fixed
@@ -57,13 +57,13 @@ struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
   std::string solver = "gather";
-  SolverSettings own;  ///< what only one solver has, by its type
+  SolverSettings own;  ///< settings that only one solver has, by its type
   /// Side of a lightmap in texels; nothing: by the scene (luxel/pipeline/texels/resolution.h).
   std::optional<int> resolution;
   float texels_per_metre = 0;  ///< > 0: chooses the resolution; with automatic pages their number
   PagesSetting pages;
   atlas::UvMode uv = atlas::UvMode::automatic;
-  /// What set_quality() was asked for. The numbers below count, whatever it says.
+  /// The argument of set_quality(). The numbers below count, whatever it says.
   Quality quality = Quality::none;
   int samples = gather::GatherParams{}.samples;  ///< rays or paths per texel
   /// Shadow rays per texel towards area lights; nothing: first_direct_samples(), and with gather
@@ -95,7 +95,7 @@ struct BakeSettings {
   bool denoise = false;             ///< take the grain out of texels, docs/method/denoise.md
   bool stitch = true;               ///< make charts agree along seams
   bool repair_leaks = true;         ///< cut charts at thin walls, move samples out of solids
-  export_::Attach attach = export_::Attach::lightmap;  ///< how baked.glb shows the light
+  export_::Attach attach = export_::Attach::lightmap;  ///< the way that baked.glb shows the light
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
   bool texels = false;         ///< texels.png too
   bool error_map = false;      ///< error.png too
@@ -113,16 +113,16 @@ struct BakeSettings {
   bool keep = false;  ///< build on the bake in DIR/cache, or leave one there; docs/method/rebake.md
 };
 
-/// Whether rays are added in rounds, and `samples` is ignored.
+/// Rays are added in rounds, and `samples` is ignored.
 inline bool adds_rounds(const BakeSettings& settings) {
   return settings.max_error > 0 || settings.time_budget_s > 0;
 }
-/// How finely direct light is sampled at first: as the settings say, or as fits the samples.
+/// Shadow rays and points per texel of the first direct light: as set, or as fits the samples.
 int first_direct_samples(const BakeSettings& settings);
 int first_supersample(const BakeSettings& settings);
 
-/// What options say must not contradict each other. Errors (bad_setting) name the options, the
-/// values, and what works. The values themselves are checked by the table of options.
+/// Checks that options do not contradict each other. Errors (bad_setting) name the options, the
+/// values, and a way out. The table of options checks the values themselves.
 Status check_contradictions(const BakeSettings& settings);
 
 /// The value of --directional that stands for it.

@@ -15,7 +15,7 @@ namespace luxel::pipeline {
 /// a solver looks at one.
 const Options<BakeSettings>& bake_options();
 
-/// Whether a solver looks at an option.
+/// The solver looks at the option.
 bool looks_at(const Solver& solver, const Option<BakeSettings>& option);
 /// "gather, matrix": the solvers that look at an option, or at any row of a flag; those that can
 /// plan with "--plan".
@@ -30,8 +30,8 @@ Status check(const BakeSettings& settings);
 
 /// By each option's key; those of one solver in an object of its name, for that solver only.
 nlohmann::json to_json(const BakeSettings& settings);
-/// What to_json() made, or the bake.json that holds it; keys that are not there keep their value.
-/// Errors (bad_setting): a key or value that no option has.
+/// Reads the JSON that to_json() made, or the bake.json that holds it. Keys that are not there keep
+/// their value. Errors (bad_setting): a key or value that no option has.
 Status read_json(const nlohmann::json& json, BakeSettings& settings);
 /// Reads bake.json, or what it holds as settings, from a file. Errors: no such file, no JSON, a
 /// key or value that no option has.

@@ -14,8 +14,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// What is in no row cannot be given: a row holds all that the command line, the checks and
-// bake.json need.
+// A row holds all that the command line, the checks and bake.json need. An option without a row
+// cannot be given.
 TEST(BakeOptions, RowsAreWhole) {
   for (const auto& row : bake_options()) {
     SCOPED_TRACE(row.flag);
@@ -75,7 +75,7 @@ std::string other_value(const Option<BakeSettings>& row) {
                                                   : "7";
 }
 
-// What was given on the command line comes back out of bake.json, one option at a time.
+// Each option that the command line sets comes back out of bake.json.
 TEST(BakeOptions, ValuesComeBackFromBakeJson) {
   int tried = 0;
   for (const auto& row : bake_options()) {

@@ -36,7 +36,7 @@ constexpr int kTrialPart = 100, kMostTrialPart = 25;
 constexpr double kRaysWorthATrial = 2e6;
 /// Stages after light may take so many times what is expected, and still end in time.
 constexpr double kSafeAfter = 1.25;
-/// What the first direct light and the first rays may take of a time budget.
+/// The most of a time budget that the first direct light and the first rays may take.
 constexpr double kFirstShare = 0.3;
 
 void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams& params,
@@ -62,7 +62,7 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
       is_rms ? "the root mean square error is" : "95 % of texels err by less than", error, why));
 }
 
-/// What a team needs where one process needs `f`; all members take the first one's word.
+/// The forecast of a team, where one process needs `f`. All members use the first one's.
 Result<gather::Forecast> shared_out(Team* team, gather::Forecast f, Progress& progress) {
   if (!team) return f;
   for (double* seconds : {&f.direct_s, &f.supersample_s, &f.trace_s, &f.bounces_s}) {
@@ -193,7 +193,7 @@ KeptBake kept_bake(const light::TexelScene& in, const light::LightLayers& layers
 /// Drops layers that nobody has asked for.
 void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.layer_irradiance); }
 
-/// What gather() is called with.
+/// The arguments of gather().
 struct GatherCall {
   const light::TexelScene& in;
   const light::LightLayers* layers;

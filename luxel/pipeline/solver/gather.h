@@ -1,4 +1,4 @@
-// What a bake asks of gather: a number of samples, an error, or a time.
+// The parameters of gather for a bake that asks for a number of samples, an error, or a time.
 #pragma once
 
 #include "luxel/pipeline/settings/settings.h"

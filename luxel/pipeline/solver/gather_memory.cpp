@@ -32,7 +32,7 @@ constexpr uint64_t kKeptTexels = bytes_per_entry(&atlas::TexelMap::texels);
 /// Lights have layers in both kept direct light and kept light.
 constexpr uint64_t kKeptLayer = light::kDirectLayerBytesPerElement;
 
-/// What a bake that is kept holds besides, in its bounces and when all is over.
+/// Bytes that a bake with --keep holds besides: in its bounces, and when all is over.
 struct KeptBytes {
   uint64_t bouncing = 0, ending = 0;
 };
@@ -54,7 +54,7 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
                       (stores.cache && stores.cache->found());
   const bool keeps_places =
       looks_at_places(settings) || shows || (stores.device && stores.device->is_optional);
-  // What lies in files was not counted, and need not be given back.
+  // Places in files were not counted, and need not be given back.
   const bool in_files = mapped_memory_of(in) != nullptr;
   const uint64_t given_back = keeps_places || in_files ? 0 : transport::kPlaceBytesPerElement * n;
   const bool follows = !settings.direct_samples || !settings.supersample;

@@ -1,4 +1,4 @@
-// What the gather solver holds of memory.
+// The memory that the gather solver holds.
 #pragma once
 
 #include "luxel/pipeline/settings/settings.h"

@@ -1,4 +1,4 @@
-// What gather's light will take.
+// The time and memory that gather's light will take.
 #pragma once
 
 #include "luxel/pipeline/solver/plan.h"

@@ -25,10 +25,10 @@ Bake bake(const BakeSettings& settings) {
   return std::move(*result);
 }
 
-// What docs/guide/quality-and-time.md promises: the light of 9 texels of 10 and more lies within
-// twice the claimed error and a thousandth of the mean of the truth, which a path tracer knows up
-// to its own noise. Paths know nothing of texels that stand for all of their area in later bounces:
-// that error of gather is inside of the claim, too.
+// docs/guide/quality-and-time.md promises: the light of 9 texels of 10 and more differs from the
+// truth by at most twice the claimed error and a thousandth of the mean. A path tracer knows the
+// truth up to its own noise. Its paths know nothing of texels that stand for all of their area in
+// later bounces: the claim includes that error of gather, too.
 TEST(SlowMaxError, TheTruthLiesWithinTheClaim) {
   BakeSettings settings = box_at(64);
   settings.max_error = 0.02;
@@ -53,7 +53,7 @@ TEST(SlowMaxError, TheTruthLiesWithinTheClaim) {
   EXPECT_GT(judged, 2000);
 }
 
-/// What was shown as time left when light was shown.
+/// The time that was shown as left, each time that light was shown [s].
 std::vector<double> seconds_left_while_lit(const BakeSettings& settings) {
   std::vector<double> out;
   Progress progress;
@@ -86,7 +86,7 @@ TEST(TimeLeft, ToAnErrorIsKnownAfterTheFirstRound) {
   EXPECT_GT(shown.back(), 0) << "files are still to be written";
 }
 
-// What the budget leaves, and not only what the end takes. Nobody waits for it.
+// All that the budget leaves is shown, not only the end's time. The test does not wait for it.
 TEST(TimeLeft, IsThatOfABudget) {
   BakeSettings settings = box_at(32);
   settings.time_budget_s = 1000;

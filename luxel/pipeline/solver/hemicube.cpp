@@ -81,7 +81,7 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
   return out;
 }
 
-/// What a hemicube of this size would hold before anything is seen.
+/// A clause on the memory of a hemicube's pixels; empty below 0.1 GiB.
 std::string hemicube_memory(int resolution) {
   const double gib = double(hemicube::bytes_of_hemicube(resolution, 1)) / double(1u << 30);
   return gib < 0.1 ? std::string() : fmt::format("; it would take {:.1f} GiB for its pixels", gib);

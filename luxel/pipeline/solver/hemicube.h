@@ -9,8 +9,8 @@ namespace luxel::pipeline {
 
 /// The rows of the solver's parameters that a user chooses.
 Options<hemicube::HemicubeParams> hemicube_options();
-/// What a bake by these settings asks of the solver, memory and folders aside: four shadow rays for
-/// each of --direct-samples.
+/// The solver's parameters by these settings, memory and folders aside: four shadow rays for each
+/// of --direct-samples.
 hemicube::HemicubeParams hemicube_params(const BakeSettings& settings);
 /// Contradictions between them. Errors (bad_setting).
 Status check_contradictions(const hemicube::HemicubeParams& params);

@@ -13,7 +13,7 @@ double mean_luminance(std::span<const Rgb> light) {
   return sum / double(std::max<size_t>(light.size(), 1));
 }
 
-/// What errors are relative to: gather::relative_errors().
+/// The light that errors are relative to, as in gather::relative_errors().
 double denominator(Rgb light, double mean) {
   return std::max(double(luminance(light)), 0.1 * mean);
 }

@@ -154,7 +154,7 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   LUXEL_TRY(out.answers, light::point_answers({in, radiosity, direct.variance, of_direct},
                                               out.hidden, progress));
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
-  // What patches exchange has no grain: every texel reads it through the same smooth functions.
+  // Patches exchange light without grain: every texel reads it through the same smooth functions.
   out.variance.assign(in.elements.size(), 0.0f);
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);

@@ -54,7 +54,7 @@ std::vector<CheckedTexel> choose_texels(const TexelLight& light, std::span<const
   return out;
 }
 
-/// What paths have found so far, per texel that is looked at.
+/// The light that paths have found so far, per texel that is looked at.
 struct PathAnswers {
   std::vector<CheckedTexel> chosen;
   std::vector<double> first, second;  ///< sums of luminance over paths [W/m^2]
@@ -96,7 +96,7 @@ Status trace_more(const light::TexelScene& in, size_t begin, int more, const Che
 /// The mean square of errors over the square of the mean light.
 struct SquareError {
   double likeliest = 0, largest = 0;
-  /// Whether it varies more from texel to texel than by the paths' noise.
+  /// True: the error varies more from texel to texel than by the paths' noise.
   bool varies = false;
 };
 

@@ -1,4 +1,4 @@
-// How far the texels of a solver are off, by paths.
+// Measures by paths how far the texels of a solver are off.
 #pragma once
 
 #include <cmath>

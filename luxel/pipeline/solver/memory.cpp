@@ -7,11 +7,10 @@
 namespace luxel::pipeline {
 namespace {
 
-/// What other solvers leave for each texel, and what they and the steps after them take.
+/// Bytes per element, and per texel of the square, for other solvers' light and the steps after.
 constexpr uint64_t kOther = 72, kSquareOther = 20;
-/// What threads work in and allocators hold, 6 to 14 MiB beyond all of the above in scenes of half
-/// a million texels, and what differs from run to run: by this much less than the size that is
-/// advised.
+/// Added to the --max-memory that is advised. Threads and allocators hold 6 to 14 MiB beyond all of
+/// the above in scenes of half a million texels, and runs differ.
 constexpr uint64_t kResidentNoiseMb = 16;
 
 std::string size_text(uint64_t bytes) {

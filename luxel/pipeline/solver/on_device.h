@@ -9,14 +9,14 @@
 
 namespace luxel::pipeline {
 
-/// Whether the processor may do what the device has failed at: it is optional, and the error is one
-/// that a device can have.
+/// True: the processor may do the work that the device has failed at. The device is optional, and
+/// the error is one that a device can have.
 bool may_go_on_without(const BakeDevice& on, const Error& error);
 
 /// The warning that the processor has done it, and why: a part of a sentence.
 std::string warning_without(const BakeDevice& on, std::string_view why);
 
-/// What took part in a bake, and what there is to say of it.
+/// The device that took part in a bake, and the warnings about it.
 struct TookPart {
   std::string device;  ///< empty: the processor alone
   std::vector<std::string> warnings;

@@ -1,4 +1,4 @@
-// What a bake will take, before it is made.
+// The time and memory that a bake will take, before it is made.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// What a solver is to the rest of luxel: a row of the table in solvers.cpp, written in the solver's
+// A solver as the rest of luxel sees it: a row of the table in solvers.cpp, written in the solver's
 // own file in this folder.
 #pragma once
 
@@ -24,11 +24,11 @@ using SolveFunction = Result<TexelLight> (*)(const light::TexelScene& in,
                                              const SolveStores& stores,
                                              const SolveObserver& observer, Progress& progress);
 
-/// What the light will take, by trials of a few texels. Errors: cancelled, memory is too small.
+/// Plans the light by trials of a few texels. Errors: cancelled, memory is too small.
 using PlanFunction = Result<Plan> (*)(const light::TexelScene& in, const BakeSettings& settings,
                                       Progress& progress);
 
-/// How a solver reads an option that it shares with others, where that needs a word.
+/// A note on a shared option that this solver reads in a way of its own.
 struct OptionNote {
   std::string_view flag, text;
 };
@@ -45,7 +45,7 @@ struct Solver {
   UsualFunction usual = nullptr;    ///< null: nobody knows
   Options<BakeSettings> options{};  ///< that no other solver has; options_of_solver() makes them
   std::vector<OptionNote> notes{};
-  /// Whether its options contradict each other; null: they cannot. Errors (bad_setting).
+  /// Checks that its options do not contradict each other; null: they cannot. Errors (bad_setting).
   Status (*check)(const BakeSettings& settings) = nullptr;
 };
 

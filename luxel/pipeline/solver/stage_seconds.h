@@ -1,4 +1,4 @@
-// What the stages of a command took, as its reports say it.
+// The time that the stages of a command took, as its reports say it.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,8 +11,8 @@ namespace luxel::pipeline {
 /// Wall-clock seconds per stage, one entry for stages of the same name, and their `total`.
 nlohmann::json stage_seconds(std::span<const Stage> stages);
 
-/// What stages have left of a --time-budget [s], 0 or less where it is over; infinite where there
-/// is none, which is 0.
+/// Time that the stages leave of a --time-budget [s]: 0 or less where it is over, infinite where
+/// there is no budget (0).
 double seconds_left(double budget_s, std::span<const Stage> stages);
 
 }  // namespace luxel::pipeline

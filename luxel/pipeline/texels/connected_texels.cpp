@@ -53,7 +53,7 @@ Read read_at(const light::TexelScene& in, std::span<const uint8_t> hidden, uint3
   return out;
 }
 
-/// Whether the samples of two texels on both sides of a seam are open to each other.
+/// The samples of two texels, one on each side of a seam, are open to each other.
 bool are_open(const light::TexelScene& in, uint32_t a, uint32_t b) {
   const auto place = [&](uint32_t texel) {
     const atlas::Texel& t = in.map.texels[texel];

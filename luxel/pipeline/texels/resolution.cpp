@@ -81,7 +81,7 @@ std::string limit_of(const SettledResolution& settled) {
   return fmt::format("a default bake stops at about {:.0f} million texels", millions);
 }
 
-/// What would do: every chart but a fiftieth of the area kFewestTexelsAcross wide or wider.
+/// Advises `density`: all charts but a fiftieth of the area are kFewestTexelsAcross wide or more.
 std::string advice_for(const SettledResolution& settled, double density) {
   const double pages = double(settled.settings.pages.count);
   const double side = atlas::side_at(settled.detail, kSpare * density, kGutter) / std::sqrt(pages);

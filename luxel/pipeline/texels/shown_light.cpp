@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kLeast = 0.01f;
 
-/// What a viewer takes for the reflectance.
+/// The reflectance that a viewer assumes.
 Rgb shown_reflectance(const scene::Scene& scene, const scene::SurfacePoint& p) {
   const scene::Material& material = scene::material_at(scene, p);
   const auto c = scene::base_color_at(scene, p);

@@ -1,4 +1,4 @@
-// What every solver of the pipeline gets besides a light::TexelScene, and what it gives.
+// The input of every solver of the pipeline besides a light::TexelScene, and its result.
 #pragma once
 
 #include <cstdint>
@@ -36,27 +36,27 @@ struct BakeDevice {
   gather::RayDevice* rays = nullptr;       ///< for gather
   hemicube::LookDevice* look = nullptr;    ///< for hemicube
   reference::PathDevice* paths = nullptr;  ///< for reference
-  std::string name;                        ///< what bake.json calls it
+  std::string name;                        ///< its name in bake.json
   /// Where the device cannot have the bake, or fails, the processor has it, with a warning.
   bool is_optional = false;
 };
 
-/// What outlives a solver; null where there is nothing of the kind.
+/// Objects that outlive a solver; null where there is none.
 struct SolveStores {
   PartStore* parts = nullptr;  ///< where its finished parts are kept and found
-  BakeCache* cache = nullptr;  ///< what it builds on, and where it keeps itself for later bakes
+  BakeCache* cache = nullptr;  ///< the bake that it builds on, and its place for later bakes
   const BakeDevice* device = nullptr;
   Team* team = nullptr;  ///< whose members share the work out, of a solver with `teams`
 };
 
-/// Who watches a solver; nothing where nobody does.
+/// Observers of a solver; nothing where nobody watches.
 struct SolveObserver {
   light::OnLightEstimate on_estimate{};  ///< gets light as it grows, of a solver with `errors`
   /// With on_estimate: GatherObserver::guess and GatherObserver::is_watched.
   std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
   std::function<bool(size_t element)> is_watched{};
   light::OnBounce on_bounce{};  ///< GatherObserver::on_bounce
-  /// Who watches hemicube; null: nobody.
+  /// Watches hemicube; null: nobody does.
   const hemicube::Observer* hemicube = nullptr;
   /// Called, or not, when the solver looks at no place of an element any more: they take memory.
   std::function<void()> on_traced{};
@@ -68,7 +68,7 @@ struct VertexLit {
   float intensity = 1;  ///< colors * intensity = E [W/m^2], times the scene's own vertex colours
 };
 
-/// What every solver gives.
+/// The result of every solver.
 struct TexelLight {
   std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2]
   /// Estimated variance of its luminance per texel, the direct part aside; empty: light without
@@ -110,7 +110,7 @@ struct TexelLight {
 /// (mapped_memory_of()) and nobody watches it.
 inline constexpr uint64_t kPartsBytesPerElement =
     bytes_per_entry(&TexelLight::variance, &TexelLight::direct, &TexelLight::direct_variance);
-/// What TexelLight takes per element besides that of layers, where a solver fills all of it.
+/// Bytes of TexelLight per element, layers aside, where a solver fills all of it.
 inline constexpr uint64_t kLightBytesPerElement = bytes_per_entry(
     &TexelLight::irradiance, &TexelLight::variance, &TexelLight::direct,
     &TexelLight::direct_variance, &TexelLight::errors, &TexelLight::samples, &TexelLight::hidden);

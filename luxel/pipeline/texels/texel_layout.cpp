@@ -27,9 +27,9 @@ atlas::AtlasParams params_of(const BakeSettings& settings) {
   return params;
 }
 
-// What gather and the steps after it take at most, in bytes per texel of the square, hits and the
-// scene aside; and what takes more. Too much makes a bake slower; too little has it refused where
-// it could have gone on in files.
+// The most memory of gather and the steps after it, in bytes per texel of the square, hits and the
+// scene aside; and additions for some settings. Too large a bound makes a bake slower. Too small a
+// one refuses a bake that could have gone on in files.
 constexpr uint64_t kMost = 150, kMostOfRounds = 80, kMostKept = 130, kMostOfLayers = 600,
                    kMostScattering = 60;
 

@@ -17,7 +17,7 @@
 
 namespace luxel::pipeline {
 
-/// What was found and done against leaks; docs/method/leaks.md. Texels are indices into
+/// Leaks that were found and repaired; docs/method/leaks.md. Texels are indices into
 /// TexelMap::texels.
 struct LeakRepair {
   uint32_t cuts = 0;                  ///< planes along which charts were cut
@@ -35,7 +35,7 @@ struct TexelLayout {
   trace::RayTracer tracer;  ///< of the scene as it is now
   LeakRepair repair;
   std::vector<uint32_t> near_back_faces;  ///< MovedSamples::near_back_faces
-  // What split_sides() said of the scene before it was laid out:
+  // Results of split_sides(), from before the scene was laid out:
   std::optional<WrongSides> wrong_in_uv1;
   std::vector<std::string> warnings;
 };
@@ -74,7 +74,7 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                                   std::span<const Box3> boxes, scene::Scene& scene,
                                   Progress& progress);
 
-/// Whether a barrier stands between two texels of one chart. Refers to its arguments.
+/// The test for a barrier between two texels of one chart. It refers to the arguments.
 post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const atlas::TexelMap& map, const trace::RayTracer& tracer);
 

@@ -9,7 +9,7 @@
 
 namespace luxel::pipeline {
 
-/// What is known about texels besides their light. Indices into TexelMap::texels; `hidden` and
+/// Findings about texels besides their light. Indices into TexelMap::texels; `hidden` and
 /// `seam_error` have an entry per texel, or none.
 struct TexelFacts {
   std::span<const uint8_t> hidden;

@@ -23,7 +23,7 @@ constexpr uint32_t kWalks = 64, kSteps = 4;
 /// Walks from the inside of an open box get out more often than this, those that slip through the
 /// joints of a closed one far less.
 constexpr double kOpenShare = 0.1;
-/// How far a shell's surroundings reach beyond its box, relative to the box's diagonal.
+/// The reach of a shell's surroundings beyond its box, relative to the box's diagonal.
 constexpr float kSurroundings = 0.1f;
 /// At most so many of a mesh's instances are looked at.
 constexpr size_t kMostPlaces = 4;
@@ -37,7 +37,7 @@ struct Shells {
   std::vector<std::vector<uint32_t>> candidates;  ///< triangles that may need a back
 };
 
-/// What scatters light through itself is lit on both sides, inside of lampshades as well.
+/// A surface that scatters light through itself is lit on both sides, inside of lampshades as well.
 bool scatters(const scene::Scene& scene, const scene::Mesh& mesh, uint32_t triangle) {
   return scene.materials[mesh.triangle_material[triangle]].diffuse_transmission > 0;
 }
@@ -122,7 +122,7 @@ Box3 grown(Box3 box, float by) {
   return {box.lower - d, box.upper + d};
 }
 
-/// What walks look at.
+/// The scene as walks look at it.
 struct ShellScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -196,8 +196,8 @@ trace::Ray ray_from(const ShellScene& shell_scene, const scene::SurfacePoint& p,
   return {origin, 0, d, INFINITY};
 }
 
-/// Whether one of some randomly chosen lights with a position shines on another one. Not quite as
-/// far as it is: there may be the lamp's own surface.
+/// True: one of some randomly chosen lights with a position is seen from `origin`. The ray ends
+/// just short of the light, where the lamp's own surface may be.
 bool sees_light(const ShellScene& shell_scene, Vec3 origin, Vec3 side, RandomStream& random) {
   // Each lamp is mostly behind the others, and most triangles of a lantern face away.
   constexpr int kTries = 8;
@@ -213,7 +213,7 @@ bool sees_light(const ShellScene& shell_scene, Vec3 origin, Vec3 side, RandomStr
   return false;
 }
 
-/// Whether a walk from the back of a triangle gets out, or a light shines on it.
+/// True: a walk from the back of a triangle gets out, or a light shines on that back.
 bool gets_out(const ShellScene& shell_scene, const Placed& own, const scene::SurfacePoint& from,
               RandomStream& random) {
   const Vec3 behind = -scene::front_normal(shell_scene.scene, from.instance, from.triangle);
@@ -274,7 +274,7 @@ std::string rough_percent(double share) {
   return share < 0.1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
-/// What there is to say of a valid TEXCOORD_1 and `count` triangles with open backs.
+/// Warnings about a valid TEXCOORD_1 and `count` triangles with open backs.
 std::vector<std::string> what_uv1_shows(size_t count, const std::optional<WrongSides>& wrong) {
   if (!wrong)
     return {fmt::format(

@@ -24,7 +24,7 @@ namespace luxel::pipeline {
 /// sides in any case. Errors: cancelled, no memory for the ray tracer.
 Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene, Progress& progress);
 
-/// What sides are split for.
+/// The layout and the light that sides are split for.
 struct SidesParams {
   atlas::UvMode uv = atlas::UvMode::automatic;
   int resolution = 512;
@@ -37,10 +37,10 @@ struct SidesParams {
 Result<atlas::UvMode> settle_uv(const scene::Scene& scene, const SidesParams& params,
                                 std::vector<std::string>& warnings, const Progress& progress);
 
-/// What became of the sides.
+/// The result of split_sides().
 struct Sides {
   atlas::UvMode uv;  ///< for the layout: unwrap where TEXCOORD_1 cannot hold the light
-  /// What a TEXCOORD_1 that is valid would show wrongly, where that was the question.
+  /// Light that a valid TEXCOORD_1 would show wrongly, where that was the question.
   std::optional<WrongSides> wrong_in_uv1;
   std::vector<std::string> warnings;
 };

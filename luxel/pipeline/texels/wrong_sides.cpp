@@ -21,7 +21,7 @@ constexpr int kSidePaths = 64, kPathsOfMean = 16;
 /// Points between two looks at whether the work was cancelled.
 constexpr size_t kPointsAtOnce = 64;
 constexpr uint64_t kPointSeed = 0x7369646573;
-/// What an eye takes for the same: of the brighter side, and of the scene's mean.
+/// An eye overlooks differences below these: of the brighter side, and of the scene's mean.
 constexpr float kSameShare = 0.25f, kDarkShare = 0.1f;
 constexpr float kStandardErrors = 2;
 /// Light of this share of the other side's is none.
@@ -31,7 +31,7 @@ constexpr uint32_t kEyes = 8, kLooks = 32;
 /// Shares: fronts among the surfaces below an eye where somebody may stand; surfaces among all that
 /// it looks at; and eyes that are there among those of a point that shows.
 constexpr double kFewestFronts = 0.25, kFewestSurfaces = 0.25, kFewestEyes = 0.25;
-/// How far away eyes are where nothing is behind them, relative to the scene's diagonal.
+/// The largest distance of an eye from its point, relative to the scene's diagonal.
 constexpr float kFarEye = 0.25f;
 
 /// The light of one side at a point.
@@ -127,7 +127,7 @@ float mean_seen(std::span<const SideLight> light) {
   return count > 0 ? sum / count : 0;
 }
 
-/// What is below an eye.
+/// Surfaces below an eye.
 struct Below {
   uint32_t fronts = 0, backs = 0;
 
@@ -151,9 +151,9 @@ Below look_down(const trace::RayTracer& tracer, Vec3 eye, uint64_t seed) {
   return out;
 }
 
-/// Whether the back of a point is seen from places where somebody may stand: over floors, or over
-/// anything where its front is black. Eyes are put halfway to what rays from the back meet, so that
-/// nothing is between them and the point.
+/// True: the back of a point is seen from places where somebody may stand: over floors, or over
+/// anything where its front is black. Eyes are put halfway to the hits of rays from the back, so
+/// that nothing is between them and the point.
 bool is_looked_at(const scene::Scene& scene, const trace::RayTracer& tracer,
                   const scene::SurfacePoint& p, float diagonal_m, bool front_is_black,
                   uint64_t seed) {
@@ -172,7 +172,7 @@ bool is_looked_at(const scene::Scene& scene, const trace::RayTracer& tracer,
   return standing >= kFewestEyes * kEyes;
 }
 
-/// What was found at the spread points.
+/// The light at the spread points.
 struct PointLight {
   std::vector<SideLight> fronts, backs;
   float mean = 0;

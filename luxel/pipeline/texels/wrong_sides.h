@@ -1,4 +1,4 @@
-// Whether one place for both sides of a surface can hold their light.
+// Measures the light that one place for both sides of a surface would show wrongly.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,12 @@ struct WrongSides {
 /// is a square of 26 pixels.
 inline constexpr double kMostShownWrong = 1e-3;
 
-/// Whether the lights of the scene are those that will shine. Where others come later, both sides
-/// may get any light.
+/// `known`: the lights of the scene are those that will shine. `to_come`: others come later, and
+/// both sides may get any light.
 enum class LightIs : uint8_t { known, to_come };
 
-/// What TEXCOORD_1 would show wrongly if it were kept. `open`: what open_backs() gave; every mesh
-/// has TEXCOORD_1.
+/// The shares that TEXCOORD_1 would show wrongly if it were kept. `open`: the result of
+/// open_backs(). Every mesh has TEXCOORD_1.
 ///
 /// Light of both sides is traced by paths from points spread over the open triangles. It differs
 /// where the difference is larger than two standard errors and a quarter of the brighter side, if

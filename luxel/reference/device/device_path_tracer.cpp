@@ -75,7 +75,7 @@ struct EyePush {
 };
 static_assert(sizeof(EyePush) == 64);
 
-/// How the paths of receivers or pixels are shared out: each has `slices` threads.
+/// The division of each receiver's or pixel's paths into `count` slices, a thread for each.
 struct Slices {
   size_t count = 1;
   uint32_t samples_of_each = 1;

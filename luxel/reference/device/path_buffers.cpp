@@ -66,7 +66,7 @@ Result<gpu::Buffer> uploaded(gpu::Commands& commands, std::span<const T> values)
   return gpu::uploaded_or_one(commands, values, "the buffer of what paths look at");
 }
 
-/// Whether vertex normals bend the surface over the triangle: transport::smooth_point().
+/// True: vertex normals bend the surface over the triangle, as in transport::smooth_point().
 bool bends(const std::array<Vec3, 3>& normals, Vec3 front) {
   return std::ranges::all_of(normals, [&](Vec3 n) { return dot(normalize(n), front) >= 0.5f; });
 }

@@ -148,7 +148,7 @@ Result<gpu::Buffer> uploaded(gpu::Commands& commands, const std::vector<T>& valu
   return gpu::uploaded(commands, std::as_bytes(std::span(values)), "the buffer of hemicubes");
 }
 
-/// What looking needs on the device.
+/// Commands and buffers for looking on the device.
 struct Looking {
   gpu::Commands& commands;
   size_t elements, at_a_time;
@@ -158,7 +158,7 @@ struct Looking {
   gpu::Buffer from{}, from_sent{}, views{}, views_back{}, shares{}, shares_back{};
 };
 
-/// How the device looks: made once for a scene.
+/// The shader that looks: made once for a scene.
 struct LookShader {
   gpu::Pipeline pipeline;
   gpu::PieceSize piece{16};  ///< of viewpoints
@@ -235,7 +235,7 @@ Result<double> look_from(std::span<const hemicube::Viewpoint> from, LookShader& 
   return seconds;
 }
 
-/// What the k-th of them sees.
+/// Reads back the view from the k-th viewpoint.
 void take_view(const Looking& l, size_t k, hemicube::View& view) {
   const DeviceView& found = reinterpret_cast<const DeviceView*>(l.views_back.mapped)[k];
   view.emitted = found.emitted;

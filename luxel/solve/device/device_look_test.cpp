@@ -22,7 +22,7 @@ struct Seen {
 
 class HemicubesOnDevice : public gpu::testing::OnDevice {
  protected:
-  /// What all elements of a mesh see of it; null: on the processor.
+  /// The views of all elements of a mesh. `on` null: on the processor.
   Seen look(const scene::Scene& scene, const hemicube::Mesh& mesh, ElementKind kind,
             hemicube::LookDevice* on) const {
     const auto tracer = trace::RayTracer::build(scene);

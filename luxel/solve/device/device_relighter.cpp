@@ -181,7 +181,7 @@ DirectPush DeviceRelighter::Impl::direct_push(const matrix::RelightLights& from)
           .light_count = uint32_t(from.punctual.size())};
 }
 
-/// Whether shadow rays are so many that they go to the device in pieces of their own.
+/// True: shadow rays are so many that they go to the device in pieces of their own.
 bool DeviceRelighter::Impl::has_many_rays(const matrix::RelightLights& from) const {
   return from.direct_at_probes.empty() &&
          uint64_t(data.probe.size()) * from.punctual.size() > kMostRaysAtOnce;

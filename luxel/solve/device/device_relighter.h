@@ -8,8 +8,8 @@
 
 namespace luxel::device {
 
-/// What matrix::Relighter does, on a device: direct light at patches by shadow rays, the product by
-/// the hierarchical codec or by BC1 blocks, all bounces, and what texels or vertices get. One
+/// A matrix::Relighter on a device: direct light at patches by shadow rays, the product by the
+/// hierarchical codec or by BC1 blocks, all bounces, and the light of texels or vertices. One
 /// command buffer for each update, and some before it where shadow rays are many. `device` and the
 /// data are kept by reference and must outlive it. One thread at a time uses it.
 class DeviceRelighter {
@@ -32,7 +32,7 @@ class DeviceRelighter {
   /// Rgb of each point of RelightData::target after the last update, for shaders on this device.
   VkDeviceAddress indirect_at_points() const;
 
-  /// What the last update() took [s].
+  /// The time of the last update() [s].
   double seconds() const;
 
  private:

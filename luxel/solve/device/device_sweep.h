@@ -14,9 +14,9 @@ struct DeviceGathered {
 };
 static_assert(sizeof(DeviceGathered) == 20);
 
-/// What the elements gather from the map by the rounds that count, the same as
-/// gather::gather_round() adds up but for the order: `out` has one value per element. Returns the
-/// seconds until the device was done. Errors: no memory, the device is lost.
+/// Gathers light from the map by the rounds that count. `out` gets one value per element, equal to
+/// the sum of gather::gather_round() but for the order of terms. Returns the seconds until the
+/// device was done. Errors: no memory, the device is lost.
 Result<double> sweep(gpu::Commands& commands, LandedRays& rays, const gather::RadiosityMap& map,
                      std::span<DeviceGathered> out);
 

@@ -7,7 +7,7 @@
 
 namespace luxel::device {
 
-/// What is known of a chunk when its rays have ended.
+/// A chunk whose rays have ended.
 struct EndedChunk {
   const SlotChunk& slots;
   std::span<const uint32_t> rays;          ///< per slot

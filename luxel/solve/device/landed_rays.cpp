@@ -84,7 +84,7 @@ struct Round {
   const gpu::Device& device() const { return scene.tracer.device(); }
 };
 
-/// Whether light comes from around at all.
+/// Light comes from the surroundings.
 bool shines(const scene::Scene& scene, const light::Surroundings& around) {
   return !scene.environment.empty() || max_component(around.background) > 0;
 }

@@ -1,5 +1,5 @@
-// Gather's rays on a graphics device: made there, traced there, and where they land kept there.
-// What only the processor knows, it finds. [Moreno05, ch. 4]
+// Gather's rays on a graphics device. It makes them, traces them, and keeps where they land. The
+// processor finds what only it knows. [Moreno05, ch. 4]
 #pragma once
 
 #include "luxel/base/progress.h"
@@ -41,7 +41,7 @@ struct LandedRays {
   gpu::Buffer counted_rounds;
   uint64_t left_open = 0;  ///< rays that the processor has ended
 
-  // What sweeps need, from the first one on.
+  // Sweeps need these, from the first one on.
   gpu::Pipeline sweep;
   gpu::PieceSize sweep_piece{64};  ///< of tiles
   gpu::Buffer map_sent, map;       ///< the texels of a gather::RadiosityMap
@@ -56,7 +56,7 @@ struct LandParams {
   uint64_t open_share = 3;
 };
 
-/// How long the steps of a round took [s].
+/// The time of each step of a round [s].
 struct LandedSeconds {
   double device = 0;     ///< until the device was done with rays and sky
   double processor = 0;  ///< to end what the device has left open

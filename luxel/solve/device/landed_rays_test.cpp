@@ -20,7 +20,7 @@
 namespace luxel::device {
 namespace {
 
-/// What the rays of a scene bring from a map, on either.
+/// The light that the rays of a scene bring from a map, on the device or on the processor.
 struct Brought {
   std::vector<Rgb> irradiance;
   std::vector<float> variance, split_variance;

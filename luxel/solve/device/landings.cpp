@@ -6,7 +6,7 @@
 namespace luxel::device {
 namespace {
 
-/// What a ray meets that comes to a triangle from one side, far away.
+/// The hit of a ray that comes to a triangle from one side, far away.
 trace::Hit hit_at(const scene::Scene& scene, uint32_t instance, uint32_t triangle,
                   bool from_behind) {
   trace::Hit out{INFINITY, instance, triangle, {}, from_behind};

@@ -8,7 +8,7 @@
 namespace luxel::device {
 namespace {
 
-/// What OpenRays of landed_rays.glsl begins with.
+/// The beginning of OpenRays of landed_rays.glsl.
 struct OpenHead {
   uint32_t count = 0, capacity = 0;
 };

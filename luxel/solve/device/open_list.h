@@ -28,8 +28,8 @@ Result<OpenList> make_open_list(const gpu::Device& device, uint64_t capacity);
 /// Empties the list.
 void record_emptying(const gpu::Device& device, VkCommandBuffer commands, const OpenList& list);
 
-/// How many rays the device has left open: more than the capacity, if some found no room. Errors:
-/// the device is lost.
+/// The number of rays that the device has left open: more than the capacity, if some found no room.
+/// Errors: the device is lost.
 Result<uint32_t> open_count(gpu::Commands& commands, const OpenList& list);
 
 /// The first `count` rays of the list, in any order. Errors: the device is lost.

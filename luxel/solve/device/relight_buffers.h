@@ -1,4 +1,4 @@
-// What relighting reads and writes, in a device's memory.
+// The buffers that relighting reads and writes, in a device's memory.
 #pragma once
 
 #include <deque>

@@ -47,7 +47,7 @@ Result<double> gathered_variance(const Request& in, const Progressive& light, Pr
   return sum_of_visible(split, light.hits) * double(kElementsPerChecked);
 }
 
-/// What may be looked at more finely keeps its variance; the rest has none.
+/// Elements that may be looked at more finely keep their variance; the others get 0.
 void keep_only_what_may_be_finer(const Request& in, const light::DirectLevels& levels,
                                  std::vector<float>& variance) {
   for (size_t i = 0; i < variance.size(); ++i) {

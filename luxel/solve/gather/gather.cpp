@@ -100,7 +100,7 @@ Status trace_first(const Request& in, Progressive& light, Progress& progress) {
   return trace_round(in, target, light, progress, &watch);
 }
 
-/// What light was made of. The counts of rays stay.
+/// Frees the light that rays brought without the map. The counts of rays stay.
 void drop_light(TracedHits& hits) {
   free_memory(hits.sky), free_memory(hits.sky_by_layer);
   free_memory(hits.sky_luminance2), free_memory(hits.sky_first_less_second);

@@ -24,14 +24,14 @@ namespace luxel::gather {
 struct Earlier;
 class RayDevice;
 
-/// What a largest error is said of.
+/// The measure of error that max_error bounds.
 enum class ErrorMeasure : uint8_t {
   p95,  ///< what 95 % of elements err by less than, over their light, or over a tenth of the mean
         ///< where they are darker
   rms,  ///< the root mean square error of all elements that are not hidden, over their mean light
 };
 
-/// How many rays, and how many bounces of their light.
+/// Settings of gather(): rays, bounces of their light, and the error or the time at which it ends.
 struct GatherParams {
   int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
   /// > 0: rounds of more samples until the error is below it.
@@ -73,7 +73,7 @@ struct GatherStores {
   Earlier* earlier = nullptr;  ///< is used up; its rounds come first; null: nothing is known
 };
 
-/// Who watches gather.
+/// Callbacks that watch gather().
 struct GatherObserver {
   /// Gets the light as it grows: direct light with a guess of the rest, then about twice a second
   /// that of the elements whose rays are traced, and after each round all of it, the last being
@@ -82,8 +82,8 @@ struct GatherObserver {
   /// The guess: E per element after all bounces, from its direct part. None: an ambient term
   /// [Cohen88].
   std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
-  /// Whether rays of an element should come early, as it is asked now and then. Called by threads
-  /// that trace. None: they come in order.
+  /// True: rays of this element should come early. Asked now and then, by threads that trace. None:
+  /// they come in order.
   std::function<bool(size_t element)> is_watched{};
   /// Gets the light reflection by reflection when all rays are known, before the last estimate. It
   /// costs a sweep over all of them for each, which changes no bit of what gather() returns.
@@ -97,10 +97,10 @@ struct SourceLight {
   std::vector<Rgb> punctual;  ///< of point, spot and directional lights
   std::vector<Rgb> others;    ///< of surfaces that shine, of background and environment
 };
-/// What it takes per element while rays are traced, counted in layers.
+/// Layers of light that SourceLight takes per element while rays are traced.
 inline constexpr size_t kSourceLayers = 3;
 
-/// What gather found, one value per element.
+/// The result of gather(). Arrays have one value per element.
 struct Gather {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], after all bounces
   std::vector<Rgb> direct;      ///< the part of it that comes straight from the lights

@@ -194,7 +194,7 @@ TEST(Gather, ParallelPlatesExchangeLight) {
   for (size_t i = 0; i < result.irradiance.size(); ++i) {
     const Vec3 p = room->elements.position[i];
     if (std::abs(p.x) > 10 || std::abs(p.z) > 10) continue;
-    // What the finite plates miss at 40 from the edge: about (1/40)^2, per bounce.
+    // The finite plates miss about (1/40)^2 per bounce at 40 from the edge.
     EXPECT_NEAR(double(result.irradiance[i].x) / (p.y < 0.5f ? b2 : b1), 1.0, 0.005);
     ++checked;
   }

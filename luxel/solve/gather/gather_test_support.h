@@ -23,7 +23,7 @@ struct Room {
   std::optional<trace::RayTracer> tracer;
 };
 
-/// What follows from its scene and map.
+/// Sets all that follows from the room's scene and map.
 inline void make_ready(Room& room) {
   room.elements = transport::elements_from_texels(room.scene, room.atlas, room.map);
   room.lights = light::collect_lights(room.scene);

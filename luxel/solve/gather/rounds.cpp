@@ -10,14 +10,15 @@
 namespace luxel::gather {
 namespace {
 
-/// What the last bounces take, over those of a round: from a tolerance of 1e-2 to one of 1e-4 is as
-/// far as from 1 to 1e-2, and sweeps over all rays take more than sparse ones.
+/// Time of the last bounces over that of a round's bounces: from a tolerance of 1e-2 to one of 1e-4
+/// is as far as from 1 to 1e-2, and sweeps over all rays take more than sparse ones.
 constexpr double kFineOverRough = 4;
 /// A round that adds less than this part of the rays is not worth its bounces.
 constexpr double kSmallestRound = 1.0 / 16;
 /// The part of a round's rays that may be shadow rays.
 constexpr double kDirectShare = 0.25;
-/// What noise may have of an error when texels cost more than the rest of its square: half of it.
+/// The part of an error that noise may have when texels cost more than the rest of its square: half
+/// of the square.
 constexpr float kNoiseWithTexels = 0.70710678f;
 constexpr double kNoiseWithTexels2 = 0.5;
 /// The part of the squared noise that is allowed at which plans aim. A plan that is right to a few
@@ -31,8 +32,8 @@ constexpr double kSpareTime = 0.1;
 /// The light that answers are made of, over all rays before it.
 constexpr double kAnswersOverRays = 0.05;
 
-/// How many rays the next round may have, such that it and the last bounces end in time: tracing
-/// takes as long per ray as the last round, and bounces grow with the number of all rays.
+/// Rays that the next round may have, so that it and the last bounces end in time. Tracing takes as
+/// long per ray as in the last round, and bounces grow with the number of all rays.
 double affordable_rays(const GatherParams& params, const Progressive& light, double seconds_left) {
   const double rays = double(light.hits.rays), bounces_s = light.bounced_s * (1 + kFineOverRough);
   if (seconds_left <= 0) return 0;
@@ -84,7 +85,7 @@ double error_of(ErrorMeasure measure, const LightErrors& errors) {
   return measure == ErrorMeasure::rms ? errors.expected.rms() : double(errors.p95);
 }
 
-/// Whether the light is known well enough, or no ray helps: the rest is what texels cost.
+/// True: the light is known well enough, or no ray helps, as the rest is the error of texels.
 bool is_known(const GatherParams& params, const LightErrors& errors) {
   const double noise = params.error_measure == ErrorMeasure::rms ? std::sqrt(errors.expected.noise)
                                                                  : double(errors.noise_p95);
@@ -139,7 +140,8 @@ RoundPlan plan_rms(const Request& in, double affordable, const Progressive& ligh
                         affordable, costs_of(in, light), params.max_samples);
 }
 
-/// Whether so much noise is too much that it is worth rays to know where it comes from.
+/// True: noise is so far above the error asked for that it is worth rays to know where it comes
+/// from.
 bool asks_for_guide(const Request& in, const Progressive& light) {
   if (in.knows_rays_by_number()) return false;
   const double asked = double(in.params.max_error) * double(in.params.max_error);

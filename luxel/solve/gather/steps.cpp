@@ -52,7 +52,7 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
   light.averaged = averaged.texels.size();
   if (light.averaged > 0)
     light.shadow_rays_at_points = double(averaged.rays) / double(light.averaged);
-  // Who looks finer, and bakes that are kept, ask how finely light was sampled.
+  // Rounds that may look finer, and bakes that are kept, need to know how finely light was sampled.
   if (!in.may_look_finer() && in.stores.keep == nullptr) return {};
   light.levels = {std::vector<uint8_t>(scene.elements.size()),
                   std::vector<uint8_t>(scene.elements.size())};
@@ -103,7 +103,7 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
   if (light.hits.rounds.size() == 1)
     light.rays_per_ray = double(light.hits.rays + light.hits.rays_kept) /
                          double(std::max<uint64_t>(sum_of(light.hits.samples), 1));
-  // What was kept says nothing about how long the rays of later rounds take.
+  // Kept rays say nothing about how long the rays of later rounds take.
   const Progress::Snapshot stage = progress.snapshot();
   if (stage.total <= stage.skipped) return {};
   light.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);

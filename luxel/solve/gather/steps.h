@@ -14,7 +14,7 @@ namespace luxel::gather {
 
 struct TileWatch;
 
-/// What gather() was asked for.
+/// The arguments of gather(), and data that follows from them.
 struct Request {
   const light::TexelScene& scene;
   const light::LightLayers* layers;
@@ -26,11 +26,12 @@ struct Request {
   const light::LightLayers* followed_layers = nullptr;  ///< of followed rays; null: `layers`
 
   size_t layer_count() const { return layers ? layers->size() : 0; }
-  /// Whether rays are added where light is not known well enough.
+  /// True: rounds add rays where light is not known well enough.
   bool adds_rounds() const { return params.max_error > 0 || params.seconds > 0; }
-  /// Whether rays are kept for later bakes, or were: those do not follow a guide.
+  /// True: rays are kept for later bakes, or were kept by an earlier one. Such rays follow no
+  /// guide.
   bool knows_rays_by_number() const { return stores.keep || stores.earlier; }
-  /// Whether direct light may be looked at more finely than at first.
+  /// True: direct light may be looked at more finely than at first.
   bool may_look_finer() const {
     return adds_rounds() || params.more_shadow_rays || params.more_points;
   }
@@ -66,10 +67,10 @@ struct Progressive {
   uint64_t traced_rays = 0, traced_samples = 0;
 };
 
-/// What light of an element costs, by the rays that have been traced.
+/// Costs of an element's light, by the rays that have been traced.
 RayCosts costs_of(const Request& in, const Progressive& light);
 
-/// Whether parts of what has been done so far are left to others: it is not known as a whole.
+/// True: parts of the work so far are left to others, so that its result is not known as a whole.
 inline bool has_left_parts(const Request& in) {
   return in.stores.parts && in.stores.parts->parts_left() > 0;
 }
@@ -95,7 +96,7 @@ bool begin_anew(std::span<const uint8_t> anew, TracedHits& hits);
 /// Places at which what rays read is checked, where that costs little beside the rays. Errors:
 /// cancelled, disk full.
 Status choose_places(const Request& in, Progressive& light, Progress& progress);
-/// How far the light so far is off. Errors: cancelled.
+/// Judges how far the light so far is off. Errors: cancelled.
 Status judge(const Request& in, Progressive& light, Progress& progress);
 /// Gather::answers, when all bounces are known. Errors: cancelled, disk full.
 Result<light::Answers> answers_of(const Request& in, const Progressive& light,
@@ -109,7 +110,7 @@ Result<bool> next_round(const Request& in, double seconds_left, Progressive& lig
 
 /// Shows the light so far to who watches.
 void show(const GatherObserver& observer, const Progressive& light, bool is_last);
-/// What hits leave of the memory that they may take.
+/// Memory that hits may still take [bytes].
 uint64_t spare_bytes(const GatherStores& stores, const TracedHits& hits);
 
 }  // namespace luxel::gather

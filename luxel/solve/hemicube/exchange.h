@@ -7,9 +7,9 @@
 
 namespace luxel::hemicube {
 
-/// How the light of emissive surfaces is computed. Few triangles: exactly, the visible part of each
-/// by shadow rays at the same points for all elements, without noise [Heitz18]. Many: by the pixels
-/// that see them, as the paper does.
+/// The way to compute the light of emissive surfaces. Few triangles: exactly, the visible part of
+/// each by shadow rays at the same points for all elements, without noise [Heitz18]. Many: by the
+/// pixels that see them, as the paper does.
 struct Emission {
   bool by_pixels = false;
   light::Lights exact;  ///< lights that the pixels do not take

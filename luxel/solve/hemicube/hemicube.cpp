@@ -13,9 +13,9 @@ namespace luxel::hemicube {
 namespace {
 
 constexpr size_t kDefaultElements = 20000;
-/// How many of the elements the first mesh may have when more are to be cut where they are needed.
-/// More leaves too few for the borders of shadows; with fewer, shadows that fall between the first
-/// vertices are not found.
+/// The part of the elements that the first mesh may have when more are to be cut where they are
+/// needed. A larger part leaves too few for the borders of shadows; with a smaller one, shadows
+/// that fall between the first vertices are not found.
 constexpr double kFirstShare = 0.35;
 
 size_t element_count(const Mesh& mesh, ElementKind kind) {

@@ -8,7 +8,7 @@
 
 namespace luxel::hemicube {
 
-/// What the hemicube solver is asked for.
+/// Settings of the hemicube solver.
 struct HemicubeParams {
   ElementKind elements = ElementKind::vertex;
   int resolution = 64;  ///< pixels along an edge of the hemicube's top, even, 2 to kMaxResolution
@@ -33,7 +33,7 @@ struct HemicubeParams {
 
 inline constexpr int kMaxResolution = 2048;
 
-/// What the pixels of a hemicube take on each thread and once, before anything is seen.
+/// Memory for a hemicube's pixels, shared and of all threads, before anything is seen [bytes].
 uint64_t bytes_of_hemicube(int resolution, int threads);
 
 /// The light of a scene on a mesh of its own.

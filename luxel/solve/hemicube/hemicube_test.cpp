@@ -53,7 +53,7 @@ TEST(Hemicube, FurnaceOfManyEmittersIsExact) {
     expect_furnace(scene::furnace_box({0.5f, 0.5f, 0.5f}, {2, 2, 2}, 4), 0.5f, small(kind));
 }
 
-// What files bring along. None of it changes the box's light.
+// Files bring such triangles and vertices along. None of them changes the box's light.
 TEST(BadMeshes, DegenerateTrianglesAndIsolatedVerticesChangeNothing) {
   for (const ElementKind kind : kKinds) {
     scene::Scene box = scene::furnace_box({0.5f, 0.5f, 0.5f}, {2, 2, 2});

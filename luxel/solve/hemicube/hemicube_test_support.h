@@ -1,5 +1,4 @@
-// What the tests of the hemicube solver share: small scenes, random cuts, and a solution of a
-// scene.
+// Shared by the tests of the hemicube solver: small scenes, random cuts, and a solution of a scene.
 #pragma once
 
 #include <gtest/gtest.h>

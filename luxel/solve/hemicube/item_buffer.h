@@ -1,12 +1,12 @@
-// What each pixel of one element's hemicube sees. [Cohen85; Rodriguez06, section 5.6]
+// Item buffer: what each pixel of an element's hemicube sees. [Cohen85; Rodriguez06, section 5.6]
 #pragma once
 
 #include "luxel/solve/hemicube/look.h"
 
 namespace luxel::hemicube {
 
-/// What a pixel sees. Backs of one-sided surfaces are black, and so is what lies below the
-/// element's own triangle.
+/// Kinds of things that a pixel sees. Backs of one-sided surfaces are black, and so is all that
+/// lies below the element's own triangle.
 enum class SeenKind : uint8_t { surface, back, surroundings, below };
 
 struct Item {
@@ -22,12 +22,12 @@ struct ItemBuffer {
   std::vector<double> factor;   ///< the form factor of each pixel; they sum to 1
 };
 
-/// How a hemicube over a surface with this unit normal stands: askew about it, by an angle without
-/// a simple tangent. Rows of pixels that run along the edges of a room would see all of an edge or
-/// nothing of it.
+/// The frame of a hemicube over a surface with this unit normal, turned about it by an angle
+/// without a simple tangent. Rows of pixels that run along the edges of a room would see all of an
+/// edge or nothing of it.
 Frame frame_of_cube(Vec3 normal);
 
-/// What look() counts, pixel by pixel. Errors: cancelled.
+/// The items that look() counts, pixel by pixel. Errors: cancelled.
 Result<ItemBuffer> item_buffer(const Senders& senders, const Viewpoint& from, int resolution,
                                Progress& progress);
 

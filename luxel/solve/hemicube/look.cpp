@@ -44,7 +44,7 @@ class Shares {
   std::vector<uint64_t> touched_;
 };
 
-/// What a hit on a surface means, known per triangle of the scene.
+/// Properties of a surface that decide what a hit on it means, known per triangle of the scene.
 struct SurfaceKind {
   bool two_sided = false, emissive = false;
 };

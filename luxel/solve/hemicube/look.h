@@ -14,7 +14,7 @@
 
 namespace luxel::hemicube {
 
-/// What is looked at: a mesh, whose elements send light.
+/// The mesh that elements look at, whose own elements send light.
 struct Senders {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -31,8 +31,8 @@ struct Viewpoint {
   Vec3 position, normal, geometric_normal;
 };
 
-/// What one element sees, with the shares of its hemisphere that lead there; with what is below its
-/// own triangle, which is black, they sum to 1.
+/// The shares of one element's hemisphere, by what it sees there. With those below its own
+/// triangle, which are black, they sum to 1.
 struct View {
   /// Shares by the senders' elements, in the order of their numbers: a form factor each. Of what a
   /// pixel sees of a triangle with light per vertex, each vertex has its barycentric part, so a sum
@@ -45,7 +45,7 @@ struct View {
 };
 
 inline transport::BackFaceShares back_faces(const View& v) { return {v.back, v.two_sided_back}; }
-/// Whether an element lies inside a solid (transport/back_faces.h).
+/// An element lies inside a solid (transport/back_faces.h).
 inline bool is_hidden(const View& v) { return transport::is_hidden(back_faces(v)); }
 inline bool is_enclosed(const View& v) { return transport::is_enclosed(back_faces(v)); }
 

@@ -1,5 +1,5 @@
-// What a graphics device does of hemicubes; luxel/solve/device/ has one. Hemicubes themselves know
-// no graphics.
+// A graphics device that looks through hemicubes; luxel/solve/device/ has one. Hemicubes themselves
+// know no graphics.
 #pragma once
 
 #include "luxel/solve/hemicube/look.h"

@@ -215,7 +215,7 @@ TEST(Cuts, LocateFindsTheTriangleThatHoldsAPoint) {
 }
 
 using Edge = std::pair<uint32_t, uint32_t>;
-/// How many triangles have each edge, by their points or their vertices.
+/// The number of triangles at each edge, by their points or their vertices.
 std::map<Edge, int> edges(const Mesh& mesh, std::array<uint32_t, 3> Node::*corners) {
   std::map<Edge, int> out;
   for (const uint32_t leaf : leaves(mesh)) {

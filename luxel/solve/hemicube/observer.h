@@ -1,4 +1,4 @@
-// Who watches light arrive on the mesh, element by element.
+// Watches light arrive on the mesh, element by element.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@ namespace luxel::hemicube {
 
 struct Solution;
 
-/// What solve() tells while it works; nothing where nobody listens. What it hands over lives during
-/// the call only.
+/// Callbacks of solve() while it works; empty ones are not called. Their arguments live during the
+/// call only.
 struct Observer {
   /// A mesh stands, with the light that its elements have by then; empty where they have none.
   std::function<void(const Field&)> on_mesh{};

@@ -74,7 +74,7 @@ Neighbours neighbours_of(std::span<const LeafEdge> edges, ElementKind kind, size
   return out;
 }
 
-/// What is known of a vertex from the triangles around it.
+/// Measures of the triangles around a vertex.
 struct Fan {
   Vec3 inwards{};                   ///< sum of the corners' bisectors by their angles
   float area_m2 = 0, sizes_m3 = 0;  ///< sums over triangles: of areas, and of areas times legs

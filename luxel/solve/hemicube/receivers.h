@@ -11,8 +11,8 @@ namespace luxel::hemicube {
 
 enum class ElementKind : uint8_t { vertex, triangle };
 
-/// What an element's neighbours are: for vertices those across an edge, for triangles those that
-/// share an edge and its two vertices.
+/// Neighbours of elements: of a vertex those across an edge, of a triangle those that share an edge
+/// and its two vertices.
 struct Neighbours {
   std::vector<uint32_t> first;  ///< per element, one extra entry
   std::vector<uint32_t> element;

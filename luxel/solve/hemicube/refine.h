@@ -6,18 +6,18 @@
 
 namespace luxel::hemicube {
 
-/// How far linear (vertex) or constant (triangle) interpolation may err on each triangle of the
+/// The likely error of linear (vertex) or constant (triangle) interpolation on each triangle of the
 /// mesh, as luminance [W/m^2]: the kink of the light across its edges, which a linear function has
 /// not. Along an edge between triangles of heights h_1, h_2 with slopes g_1, g_2 away from it, a
 /// function of constant curvature k has g_1 + g_2 = k (h_1 + h_2) / 2 and errs by k h^2 / 8, and
-/// one that jumps by J errs by J / 2, so (g_1 + g_2) h / 4 stands between both. Triangles that are
-/// `unseen`, 1, do not err, and are no neighbours to others: their light is made up. Empty: none.
+/// one that jumps by J errs by J / 2, so (g_1 + g_2) h / 4 stands between both. Triangles with
+/// `unseen` = 1 do not err, and are no neighbours to others: their light is made up. Empty: none.
 std::vector<float> interpolation_errors(const Field& field, std::span<const uint8_t> unseen = {});
 
 /// Root mean square of these over the area, over the mean irradiance.
 double relative_interpolation_error(const Field& field);
 
-/// What looking needs.
+/// The scene and the mesh in it that elements look at.
 struct SendingScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -27,7 +27,7 @@ struct SendingScene {
   const Observer* observer = nullptr;  ///< hears of each look; null: nobody does
 };
 
-/// What elements see, and the light that reaches them without any reflection.
+/// Views of elements, and the light that reaches them without any reflection.
 struct Sight {
   Rows rows;
   std::vector<Rgb> source;  ///< per row: E_0

@@ -17,7 +17,7 @@ constexpr double kMaxWeight = 65535;
 /// Four floats in one register: R, G, B and nothing.
 typedef float Float4 __attribute__((vector_size(16)));
 
-/// How many entries a row can have at most: each pixel sees up to three vertices, no element comes
+/// The largest number of entries in a row: each pixel sees up to three vertices, no element comes
 /// twice, and steps that are too long for one entry take more.
 size_t max_row_entries(const Senders& senders, int resolution) {
   const size_t elements = senders.receivers.size();

@@ -1,4 +1,4 @@
-// What every element sees, kept so that all passes after the first are sums without a new ray.
+// Views of all elements, kept so that all passes after the first are sums without a new ray.
 #pragma once
 
 #include <filesystem>

@@ -123,7 +123,7 @@ TEST(Look, TheSkyHasTheRest) {
   int see_sky = 0;
   for (const View& view : looked.views(16)) {
     const double sky = double(view.emitted.x) / M_PI;
-    // What is below the element's own facet is black; a sphere's normals lean away from it.
+    // The part below the element's own facet is black; a sphere's normals lean away from it.
     EXPECT_LE(sum_of(view) + double(view.back) + sky, 1 + 2e-6);
     EXPECT_GE(sum_of(view) + double(view.back) + sky, 0.9);
     EXPECT_NEAR(double(view.emitted.y), 2 * double(view.emitted.x), 1e-5);

@@ -1,4 +1,4 @@
-// What stands between two places.
+// Faces that stand between two places.
 #pragma once
 
 #include "luxel/solve/hierarchical/tree.h"

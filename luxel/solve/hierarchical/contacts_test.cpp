@@ -39,14 +39,14 @@ scene::Scene floor_with_panel(float angle) {
   return scene;
 }
 
-/// Whether a place lies under the panel.
+/// A place lies under the panel.
 bool is_covered(DVec3 p, float angle) {
   const double c = std::cos(double(angle)), s = std::sin(double(angle));
   const double x = p.x - 0.3, z = p.z + 0.2;
   return std::abs(c * x + s * z) < 0.5 && std::abs(c * z - s * x) < 0.02;
 }
 
-// What the panel stands on is a piece of its own, and no other piece is as thin as it: cuts that
+// The floor under the panel is a piece of its own, and no other piece is as thin as it: cuts that
 // follow the panel's long sides end where it ends.
 TEST(CutAtContacts, FreesTheFootWithoutStripsFromWallToWall) {
   for (const float angle : {0.0f, 0.7f}) {

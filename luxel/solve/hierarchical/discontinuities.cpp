@@ -34,7 +34,7 @@ constexpr double kLeastSlope = 0.02;
 /// receiver. [Hardt96, chapter 7] gives 100 for its scene, a limit that follows no light.
 constexpr double kLeastNearness = 0.05;
 
-/// What one face is looked at with.
+/// One face, and the data to look for the discontinuities on it.
 struct View {
   const Solution& s;
   const trace::RayTracer& tracer;
@@ -75,8 +75,8 @@ struct Ray3 {
   DVec3 source, blocker, receiver;
 };
 
-/// How much of a source of this size appears per metre that one goes across a line. The strip of
-/// the source that appears is d_sb / d_br times as wide as the way gone, and no longer than the
+/// The part of a source of this size that appears per metre that one goes across a line. The strip
+/// of the source that appears is d_sb / d_br times as wide as the way gone, and no longer than the
 /// source.
 double geometric_factor(const View& v, const Ray3& ray, DVec3 source_normal, double source_size_m) {
   const double sb = length(ray.source - ray.blocker);
@@ -93,7 +93,7 @@ double geometric_factor(const View& v, const Ray3& ray, DVec3 source_normal, dou
   return whole * std::min(1 / source_size_m * sb / br, fastest);
 }
 
-/// Whether a ray runs free but for the blocker's edge in its middle.
+/// A ray runs free but for the blocker's edge in its middle.
 bool runs_free(const View& v, const Ray3& ray) {
   const auto nudge = [&](DVec3 from, DVec3 to) {
     const double way = length(to - from),
@@ -112,7 +112,7 @@ bool runs_free(const View& v, const Ray3& ray) {
   return !blocked[0] && !blocked[1];
 }
 
-/// What is known of a source.
+/// A source, and the least weight of the lines that it may cast.
 struct Source {
   uint32_t number = 0;
   PolygonView corners;
@@ -128,7 +128,7 @@ void add_line(const View& v, const Source& source, DiscontinuityKind kind, uint3
               Segment line, const RayAt& ray_at) {
   if (!clip_to(v.face.corners, v.face.plane.normal, line)) return;
   if (length(line.b - line.a) < kDiscontinuitiesShort * v.size_m) return;
-  // How fast the source appears, at most, along the line.
+  // The highest rate at which the source appears, over the line.
   double geometric = 0;
   int free = 0;
   for (int k = 0; k < kLooks; ++k) {
@@ -136,7 +136,7 @@ void add_line(const View& v, const Source& source, DiscontinuityKind kind, uint3
     geometric = std::max(geometric, geometric_factor(v, ray, source.normal, source.size_m));
   }
   if (geometric * double(source.radiosity) < source.least_weight) return;
-  // Whether it is seen over the blocker from anywhere on the line.
+  // The source must be seen over the blocker from somewhere on the line.
   for (int k = 0; k < kLooks; ++k)
     free += runs_free(v, ray_at(line.a + (line.b - line.a) * ((k + 0.5) / kLooks)));
   if (free == 0) return;
@@ -239,7 +239,7 @@ void add_faces(const View& v, double least_weight, double least_light) {
   std::vector<uint32_t> blockers;
   for (uint32_t f = 0; f < v.s.faces.size(); ++f) {
     if (f == v.receiver) continue;
-    // What of the face is above the receiver, if it brings light enough.
+    // The part of the face above the receiver, if it brings light enough.
     const Face& face = v.s.faces.faces[f];
     const float radiosity = radiosity_of(v.s, f);
     if (double(most_of(v.s, f)) < least_light) continue;

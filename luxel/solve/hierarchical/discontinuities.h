@@ -26,7 +26,7 @@ struct Discontinuity {
 /// Sources from here on are punctual lights.
 inline constexpr uint32_t kPunctualSource = 1u << 31;
 
-/// How discontinuities are ranked: weight = geometric factor * radiosity of the source.
+/// Measures that rank discontinuities: weight = geometric factor * radiosity of the source.
 enum class Ranking : uint8_t {
   nearness,  ///< [W/m^2], [Hardt96, section 5.3]
   slope      ///< [W/m^2 per m], [Hardt96, section 8.2]
@@ -43,8 +43,8 @@ struct DiscontinuityParams {
   uint32_t max_per_leaf = 10;  ///< lines through a leaf, at most [Hardt96, maxLeafDSets]
 };
 
-/// What the parameters mean for a solution: computed once, for all its faces. Weights are in
-/// W/m^2 per m (slope) or W/m^2 (nearness).
+/// The parameters' limits for one solution: computed once, for all its faces. Weights are in W/m^2
+/// per m (slope) or W/m^2 (nearness).
 struct DiscontinuityLimits {
   double weight = 0;  ///< the least
   double light = 0;   ///< the least that a source brings [W/m^2]

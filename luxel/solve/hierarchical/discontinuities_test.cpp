@@ -17,7 +17,7 @@ std::vector<Discontinuity> on_floor(const Solved& s, const DiscontinuityParams& 
                               params.ranking, limits_of(s.solution, params));
 }
 
-/// How many lie on x = `x`, and the longest reach of their z.
+/// The number of discontinuities on x = `x`, and the range of their z.
 struct OnLine {
   int count = 0;
   double low = INFINITY, high = -INFINITY;

@@ -39,7 +39,7 @@ struct Faces {
   size_t size() const { return faces.size(); }
 };
 
-/// Whether any of some faces has holes.
+/// At least one of the faces `some` has holes.
 bool has_holes(const Faces& faces, std::span<const uint32_t> some);
 
 /// Errors: cancelled.

@@ -1,4 +1,4 @@
-// What exact light at points tells the solution that it was computed from.
+// Feeds exact light at points back to the solution that it was computed from.
 #pragma once
 
 #include "luxel/solve/hierarchical/light_mesh.h"

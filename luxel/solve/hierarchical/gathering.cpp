@@ -28,10 +28,10 @@ constexpr double kOneRay = 0.5;
 /// see add_part. Larger cuts parts into quarters that add nothing; smaller leaves the light of
 /// sources close by too even.
 constexpr double kQuadrature = 0.2;
-/// How far what is seen of a part in half shadow may be from the mean of all of it: at most half of
-/// what its corners differ by.
+/// The largest difference between the radiosity of the seen piece of a part in half shadow and the
+/// mean of all of the part: half of the difference between its corners.
 constexpr double kHalfSeen = 0.5;
-/// What cutting the shadows of k blockers out of a source costs, in rays: about kCutCost k^2.
+/// Cost of cutting the shadows of k blockers out of a source, in rays: about kCutCost k^2.
 constexpr double kCutCost = 0.5;
 
 }  // namespace
@@ -76,7 +76,7 @@ double Gathering::rays_for(double light) const {
   return std::ceil(std::pow(kOneRay * light / params_.limit, 4.0 / 3));
 }
 
-/// What an element brings at most, and what it hides of the sky [W/m^2].
+/// The most light that an element brings, plus the light of the sky that it hides [W/m^2].
 double Gathering::at_stake(size_t index, double whole, bool shines) const {
   return whole * ((shines ? double(s_.light.elements[index].most) : 0) + params_.sky);
 }
@@ -106,7 +106,7 @@ void Gathering::visit_root(uint32_t id) {
   const size_t index = id - s_.tree.clusters.size();
   const float most = s_.light.elements[index].most;
   if (params_.sky == 0 && (!shines || (most == 0 && !list_))) return;
-  // What is at stake: the form factor, were nothing in between, and the rays that it is worth.
+  // The light at stake: the form factor, were nothing in between, and the rays that it is worth.
   turned_ = height < 0;
   const PolygonView polygon = above_horizon(e.polygon());
   if (polygon.empty()) return;
@@ -117,7 +117,7 @@ void Gathering::visit_root(uint32_t id) {
     look_by_rays(index, whole, shines);
     return;
   }
-  // What stands in between decides which is cheaper: rays, or cutting shadows out.
+  // Blockers in between decide which is cheaper: rays, or cutting shadows out.
   find_before(s_.blockers, at_.position, polygon, first_);
   std::erase(first_, e.face), std::erase(first_, at_.face);
   const auto count = double(first_.size());

@@ -1,4 +1,4 @@
-// What one point gathers from all faces.
+// Light that one point gathers from all faces.
 #pragma once
 
 #include "luxel/solve/hierarchical/source_sampler.h"
@@ -6,8 +6,8 @@
 namespace luxel::hierarchical {
 
 struct GatheringParams {
-  /// How far the light of one source may be off [W/m^2]. The dimmer sources are, and clusters of
-  /// them, the fewer rays look at them instead of closed forms.
+  /// The error that the light of one source may have [W/m^2]. Few rays replace closed forms at dim
+  /// sources, and at clusters of them: the dimmer, the fewer.
   double limit = 0;
   /// E of the background over the whole hemisphere; above 0 every face counts, for what it hides of
   /// that.

@@ -26,12 +26,12 @@ struct PointParams {
   /// Sources are taken apart, or from afar, so that the light of each is off by less than this part
   /// of the scene's mean irradiance.
   double tolerance = 1e-4;
-  /// Whether sharp lights count: points and directions, whose shadows have no penumbra. Without
-  /// them light is continuous but where faces touch.
+  /// True: sharp lights count, points and directions, whose shadows have no penumbra. Without them
+  /// light is continuous but where faces touch.
   bool sharp_lights = true;
 };
 
-/// What a point sees of a face.
+/// A face as a point sees it.
 struct Seen {
   uint32_t face = 0;
   double visible = 0, whole = 0;  ///< form factors, past others and alone
@@ -54,8 +54,8 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              std::span<const Receiver> receivers,
                                              Progress& progress);
 
-/// What a receiver sees of each face, without punctual lights and background: faces that it sees at
-/// all, the brightest first.
+/// The faces that a receiver sees at all, the brightest first. Punctual lights and background are
+/// left out.
 std::vector<Seen> sources_at(const Solution& solution, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params);
 
@@ -65,7 +65,7 @@ struct Backprojection {
   Polygon source;
   std::vector<Polygon> visible;
 };
-/// What the receiver sees of one face, past all others. [Hardt96, section 6.2]
+/// The part of one face that the receiver sees past all others. [Hardt96, section 6.2]
 Backprojection backproject(const Solution& solution, const Receiver& receiver, uint32_t face);
 
 /// The receiver at a place of a face, where vertex normals say so on the smooth surface.

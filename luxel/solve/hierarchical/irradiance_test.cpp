@@ -247,7 +247,7 @@ TEST(ExactIrradiance, TheSkyComesThroughAMask) {
   }
 }
 
-// What emits is the half that is there: of the sheet's elements the mean over what they hold.
+// Only the half that is there emits: the sheet's elements have the mean over what they hold.
 TEST(ExactIrradiance, HolesOfVertexAlphaSendNothing) {
   const auto s = solved(half_a_sheet({1, 1, 1}));
   const Receiver at{{0, -9, 0}, {0, 1, 0}, {0, 1, 0}};

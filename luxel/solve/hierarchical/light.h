@@ -8,10 +8,11 @@
 
 namespace luxel::hierarchical {
 
-/// What is a sum of cosines, v max(0, d . n), as a function of the direction n: the irradiance from
-/// some directions d, or what some surfaces with normals d send. Moments up to the second are kept,
-/// which are the clamped cosine's first Legendre polynomials, 1/4 + x/2 + 5/32 (3 x^2 - 1): within
-/// 0.1 of it, below 0 where it is 0, and the same in the mean over all directions. [Ramamoorthi01]
+/// A sum of cosines, v max(0, d . n), as a function of the direction n: the irradiance from some
+/// directions d, or the light that some surfaces with normals d send. Moments up to the second are
+/// kept, which are the clamped cosine's first Legendre polynomials, 1/4 + x/2 + 5/32 (3 x^2 - 1):
+/// within 0.1 of it, below 0 where it is 0, and the same in the mean over all directions.
+/// [Ramamoorthi01]
 struct Cosines {
   Rgb zeroth{};                 ///< sum of v
   std::array<Rgb, 3> first{};   ///< of v d

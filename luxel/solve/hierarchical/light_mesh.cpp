@@ -74,7 +74,7 @@ FaceMeshing prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimit
     w.lines = choose_active(*found, weight, limits.weight, w.plane, w.outline,
                             m.params.discontinuity.max_per_leaf, m.slack_m);
   }
-  // What of them crosses each leaf.
+  // The pieces of the lines that cross each leaf.
   for (const auto& outline : w.outline) {
     w.pieces.emplace_back();
     for (const ActiveLine& line : w.lines)
@@ -214,7 +214,7 @@ struct Samples {
   std::vector<Receiver> inside;  ///< six per triangle; none in scenes without punctual lights
 };
 
-/// Whether another face meets this one there at an angle; neighbours on a curved surface do not.
+/// Another face meets this one there at an angle; neighbours on a curved surface do not.
 bool is_touched(const Maker& m, uint32_t face, DVec3 p) {
   static thread_local std::vector<uint32_t> found;
   find_touching(m.s.blockers, p, 2 * m.slack_m, found);

@@ -56,8 +56,8 @@ Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& 
 /// leaf, ElementLight::irradiance. Errors: cancelled.
 Result<LightMesh> make_flat_mesh(const Solution& solution, const scene::Scene& scene,
                                  const trace::RayTracer& tracer, Progress& progress);
-/// What meshes of one scene share: light at places, and discontinuities. Of those the geometric
-/// part of the weight is kept, and the radiometric one follows the light there is [Hardt96,
+/// Data that meshes of one scene share: light at places, and discontinuities. Discontinuities keep
+/// the geometric part of their weight, and the radiometric one follows the light there is [Hardt96,
 /// sections 5.4 and 5.5.8].
 struct Known {
   KnownLight light;

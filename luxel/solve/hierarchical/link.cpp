@@ -29,7 +29,7 @@ constexpr double kGaussLow = 0.21132487, kGaussHigh = 0.78867513;
 /// with the weights 2/3, 1/6, 1/6 of its corners, one smaller by 1 / 2. To the corners it is so
 /// much further from the middle.
 constexpr double kOutwards[2] = {1.7320508, 2};
-/// How far a form factor is from linear over an element: see spread_of.
+/// Weights in spread_of(), the deviation of a form factor from linear over an element.
 constexpr double kCornerOverMiddle = 2, kOddPart = 0.1;
 /// Two balls exchange light as points do when the distance between their centres is at least so
 /// many times the sum of their radii. The first-order error (see link_far) is half of the light
@@ -64,8 +64,8 @@ Points points_of(const Element& e) {
   return out;
 }
 
-/// What the function that is 1 at corner a and 0 at the others, linear between, is at Gauss's point
-/// k: of a quadrilateral the product of the weights along its two sides.
+/// The value at Gauss's point k of the function that is 1 at corner a, 0 at the others and linear
+/// between. For a quadrilateral it is the product of the weights along its two sides.
 double corner_weight(uint32_t corners, uint32_t a, uint32_t k) {
   if (corners == 3) return a == k ? 2.0 / 3 : 1.0 / 6;
   constexpr double near = kGaussHigh, far = kGaussLow;
@@ -105,7 +105,7 @@ void find_blockers(const Exchange& x, const Element& r, const Element& s, const 
     link.blockers.clear(), link.crowded = true;
 }
 
-/// What an element's points see of another one, and its middle.
+/// Form factors of another element at an element's points, and at its middle.
 struct Views {
   std::array<double, 5> whole{}, visible{};
   double whole_sum = 0, visible_sum = 0;  ///< without the middle
@@ -142,14 +142,14 @@ Views look(const Exchange& x, const Element& from, const Element& at, const Link
   return out;
 }
 
-/// How far a form factor is from linear over an element, at most. What linear functions miss first
-/// is a quadratic. Let it be q x^2 across a quadrilateral, x from -1 to 1: it is q/3 at all of
-/// Gauss's points, and so is the function fitted to them. The quadratic is 0 in the middle and q at
-/// the edge, which is off by q/3 and 2q/3: twice as far as in the middle, where it is measured.
-/// (For a triangle's corners it is three times as far.) What is odd about the middle cannot show
-/// there: a border of a shadow through it, or a cubic. A tenth of the points' differences stands
-/// for that. More would divide elements over which light is linear, and for which the link is
-/// exact; with none a shadow's border that halves an element would go unseen.
+/// The largest deviation of a form factor from linear over an element. A quadratic is the first
+/// that linear functions miss. Let it be q x^2 across a quadrilateral, x from -1 to 1: it is q/3 at
+/// all of Gauss's points, and so is the function fitted to them. The quadratic is 0 in the middle
+/// and q at the edge, so the function is off by q/3 and 2q/3: twice as far as in the middle, where
+/// it is measured. (For a triangle's corners it is three times as far.) A form factor that is odd
+/// about the middle cannot show there: a border of a shadow through it, or a cubic. A tenth of the
+/// points' differences stands for that. More would divide elements over which light is linear, and
+/// for which the link is exact; with none a shadow's border that halves an element would go unseen.
 double spread_of(const Views& v) {
   const auto [least, most] = std::minmax_element(v.visible.begin(), v.visible.begin() + v.count);
   return std::max(kCornerOverMiddle * std::abs(v.visible[v.count] - v.visible_sum / v.count),
@@ -179,7 +179,7 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
                    viewfactor::VisibilityScratch& scratch) {
   Link link{.source = source};
   const Element &r = x.tree.element(receiver), &s = x.tree.element(source);
-  // Whether they face each other at all.
+  // Elements that do not face each other exchange nothing.
   if (r.face == s.face) return link;
   const Plane& r_plane = x.faces.faces[r.face].plane;
   const Face& s_face = x.faces.faces[s.face];
@@ -194,7 +194,7 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
     if (viewfactor::clip_above(r.polygon(), s_face.plane, x.blockers.slack_m).empty()) return link;
     if (near && !(closed_form(kAnyExchange) > 0)) return link;
   }
-  // What the receiver's points see of the source: the visible share, and the mean form factor.
+  // The source as the receiver's points see it: the visible share, and the mean form factor.
   find_blockers(x, r, s, parent, link);
   const Views there = look(x, r, s, link, scratch);
   if (!near && !(there.whole_sum > 0)) return link;
@@ -213,7 +213,7 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
   if (!s_face.two_sided) back = look(x, s, r, link, scratch);
   if (x.basis != Basis::linear) back.visible_sum = 0;  // corners count alike
   set_source(back, link);
-  // How far both are from linear; by reciprocity as seen from the receiver.
+  // Deviations of both from linear; by reciprocity as seen from the receiver.
   link.spread = float(spread_of(there));
   if (back.visible_sum > 0)
     link.spread = std::max(link.spread, float(spread_of(back) * s.area_m2 / r.area_m2));
@@ -309,7 +309,7 @@ Link link_far(const Exchange& x, uint32_t receiver, uint32_t source) {
   return link;
 }
 
-/// What an element or cluster sends along a direction: B A cos, summed [W].
+/// Light that an element or cluster sends along a direction: B A cos, summed [W].
 Rgb sent_along(const Exchange& x, const Light& light, uint32_t id, Vec3 direction) {
   if (x.tree.is_cluster(id)) return light.clusters[id].sent.at(direction);
   const Element& e = x.tree.element(id);

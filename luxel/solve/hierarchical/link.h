@@ -28,15 +28,15 @@ struct Link {
 /// Beyond so many, points look at all of them no longer: rays decide.
 inline constexpr size_t kMostBlockers = 48;
 
-/// What light is over elements. Linear pays (docs/method/hierarchical.md); the others are there to
-/// show it.
+/// The basis of light over elements. Linear pays (docs/method/hierarchical.md); the others are
+/// there to show it.
 enum class Basis : uint8_t {
   constant,          ///< as [Hanrahan91; Hardt96] have it
   linear_receivers,  ///< what arrives is linear, what is sent constant
   linear
 };
 
-/// What links are made from.
+/// The scene and settings that links are made from.
 struct Exchange {
   const Faces& faces;
   const Tree& tree;
@@ -53,16 +53,16 @@ struct Exchange {
 Link make_link(const Exchange& exchange, uint32_t receiver, uint32_t source, const Link* parent,
                viewfactor::VisibilityScratch& scratch);
 
-/// What error_of says of a guess: four times the most that may come over a link, whatever stands
-/// between. That is all that leaves the source, or what its brightest part would bring to all of
-/// the receiver.
+/// The value of error_of for a guess: four times the most that may come over a link, whatever
+/// stands between. That is all that leaves the source, or what its brightest part would bring to
+/// all of the receiver.
 float most_error_of(uint32_t source, uint32_t receiver, const Exchange& exchange,
                     const Light& light);
 /// A link to or from a cluster that is too near for exchange between points: a guess by eight pairs
 /// of points, for so little light that most_error_of is small.
 Link guess_link(const Exchange& exchange, uint32_t receiver, uint32_t source);
 
-/// What the source sends to a receiver over a link: E [W/m^2].
+/// E that the source sends to a receiver over a link [W/m^2].
 Rgb irradiance_of(const Link& link, const Exchange& exchange, const Light& light);
 /// By how much that may be wrong over the receiver [W/m^2], times the receiver's area over the
 /// unit: large receivers count for more.

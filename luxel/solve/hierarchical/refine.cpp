@@ -24,7 +24,7 @@ struct Open {
   uint32_t receiver = 0;
   Link link;
 };
-/// What it is divided into.
+/// One of the pairs that an open link is divided into.
 struct Pair {
   uint32_t receiver = 0, source = 0;
   uint32_t parent = 0;  ///< of the open links
@@ -196,7 +196,7 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
 /// Corners are looked at this far inwards: beside an edge something else may begin.
 constexpr double kInwards = 0.1;
 
-/// Whether something much closer than the element covers its centre and its corners.
+/// Something much closer than the element covers its centre and its corners.
 bool is_covered(const Exchange& x, const Element& e) {
   if (x.light_in_gaps) return false;
   const Face& face = x.faces.faces[e.face];

@@ -13,8 +13,8 @@ struct RefineParams {
   /// Elements are not divided below this [m^2].
   double min_area_m2 = 0;
   size_t max_elements = 1u << 20, max_links = 1u << 25;
-  /// Whether what is too near to a cluster for exchange between points gets guess_link(), where
-  /// most_error_of is no more than eps. Else it is divided down to elements.
+  /// True: a pair with a cluster that is too near for exchange between points gets guess_link(),
+  /// where most_error_of is no more than eps. Else it is divided down to elements.
   bool guesses = false;
 };
 

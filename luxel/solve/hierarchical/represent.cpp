@@ -57,7 +57,7 @@ double area_of(const LightMesh& mesh, const LightTriangle& t) {
   return 0.5 * length(cross(mesh.vertices[t.vertex[1]] - a, mesh.vertices[t.vertex[2]] - a));
 }
 
-/// How far the middles of edges are from the means of their ends, at most.
+/// The largest difference between the middles of edges and the means of their ends.
 float bend_of(const Interpolant& r) {
   const Rgb a = value_of(r, 0, 0), b = value_of(r, 1, 0), c = value_of(r, 0, 1);
   float bend = 0;
@@ -121,13 +121,13 @@ void divide_all(Refining& r, std::span<const size_t> leaves, size_t max_elements
   }
 }
 
-/// How exact light is, of meshes that say what to divide and of the last one.
+/// Precision of light: `rough` for meshes that say what to divide, `fine` for the last one.
 struct Precision {
   MeshParams rough, fine;
   double eps = 0;  ///< how far interpolants may be off [W/m^2]
 };
 
-/// How exact light at points must be, from how far interpolants may be off.
+/// The precision that light at points needs, by the error that interpolants may have.
 Precision precision_of(const Solution& s, const MeshParams& mesh_params,
                        const RepresentParams& params) {
   const double mean = double(max_component(totals_of(s).irradiance));
@@ -150,7 +150,7 @@ struct Timing {
   double later_s = 0;  ///< what the caller does after it
 
   double left() const { return seconds - seconds_since(start); }
-  /// Whether there is time for another mesh, and the last one, which is more exact, after it.
+  /// There is time for another mesh, and for the last one after it, which is more exact.
   bool has_time() const { return left() > (1 + kLastMesh) * mesh_s; }
   /// Tells what is to come, in times of the slowest mesh.
   void expect(double meshes, Progress& progress) const {

@@ -6,19 +6,19 @@
 namespace luxel::hierarchical {
 
 struct RepresentParams {
-  /// How far interpolants may be off over an element of the unit's area [W/m^2]; nothing: a quarter
-  /// of what links may.
+  /// The error that interpolants may have over an element of the unit's area [W/m^2]; nothing: a
+  /// quarter of that of links.
   std::optional<double> eps;
   int max_rounds = 8;
   size_t max_elements = 1u << 20;
-  /// Within which everything should be done, from the call on: when it is short, refinement ends
-  /// early, and less is fed back. The first and the last mesh are made all the same.
+  /// Time for everything, from the call on. When it is short, refinement ends early, and less is
+  /// fed back. The first and the last mesh are made all the same.
   double seconds = INFINITY;
   /// Seconds of the caller's own work after it. Progress is told of them, too.
   double later_seconds = 0;
 };
 
-/// What there was no time for.
+/// Steps that there was no time for.
 struct LeftOut {
   bool refinement = false, feedback = false;
 };
@@ -48,7 +48,7 @@ Result<Round> represent_once(Solution& solution, const scene::Scene& scene,
                              const trace::RayTracer& tracer, const MeshParams& mesh_params,
                              const RepresentParams& params, Known& known, Progress& progress);
 
-/// How far interpolants are off at the middles of their triangles [W/m^2]. Errors: cancelled.
+/// The error of each interpolant at the middle of its triangle [W/m^2]. Errors: cancelled.
 Result<std::vector<float>> measure_error(const Solution& solution, const scene::Scene& scene,
                                          const trace::RayTracer& tracer, const PointParams& params,
                                          const LightMesh& mesh, Progress& progress);

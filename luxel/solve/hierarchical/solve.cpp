@@ -125,7 +125,7 @@ Status link_first(Solving& w, const SolveParams& params, Progress& progress) {
   return link_all(w.state, w.x, refining, progress);
 }
 
-/// What a user should know of a solution that is done.
+/// Adds warnings that a user should read about a solution that is done.
 void add_warnings(const SolveParams& params, Solution& s) {
   if (params.eps && *params.eps < s.eps)
     s.warnings.push_back(
@@ -191,7 +191,7 @@ Result<Iterated> begin_iterating(const scene::Scene& scene, const trace::RayTrac
   s.blockers = make_blockers(s.faces);
   s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
   s.warnings = overlap_warnings(scene, s.faces, s.blockers);
-  // What errors are measured by.
+  // Units and limits for errors.
   s.basis = params.basis;
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));

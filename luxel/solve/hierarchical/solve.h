@@ -9,10 +9,10 @@
 
 namespace luxel::hierarchical {
 
-/// How exact the solution is to be, and what bounds it.
+/// Precision of the solution, and its limits.
 struct SolveParams {
-  /// How much a link may err [W/m^2]; nothing: a hundredth of the mean irradiance. No less than a
-  /// ten-thousandth of it, whatever is asked for.
+  /// The error that a link may have [W/m^2]; nothing: a hundredth of the mean irradiance. No less
+  /// than a ten-thousandth of that mean, whatever is asked for.
   std::optional<double> eps;
   double min_area_m2 = 0;  ///< elements are not divided below this; 0: the scene's area / 2^18
   size_t max_elements = 1u << 20, max_links = 1u << 25;
@@ -42,7 +42,7 @@ struct Solution {
   bool light_in_gaps = false;
   Basis basis = Basis::linear;
 
-  /// What form factors between elements are computed from. It refers to this solution.
+  /// The data that links are made from. It refers to this solution.
   Exchange exchange(const trace::RayTracer& tracer) const {
     return {faces, tree, blockers, tracer, unit_area_m2, basis, light_in_gaps};
   }
@@ -59,9 +59,8 @@ struct Iterated {
   Solution solution;
   std::vector<float> off;  ///< what light_leaves() keeps
 };
-/// What solve() begins with: everything is linked to everything by a guess of the light, as
-/// coarsely as ten times the usual eps allows, and light is gathered until it settles. Errors:
-/// cancelled.
+/// Begins as solve() does: links everything to everything by a guess of the light, as coarsely as
+/// ten times the usual eps allows, and gathers until the light settles. Errors: cancelled.
 Result<Iterated> begin_iterating(const scene::Scene& scene, const trace::RayTracer& tracer,
                                  const SolveParams& params, Progress& progress);
 /// One of its iterations: refines the links by the light there is, and gathers until the light

@@ -97,8 +97,8 @@ TEST(HierarchicalSolve, LinksHaveTheFactorsOfTheirPairs) {
   EXPECT_GT(compared, 500u);
 }
 
-// What a link brings is the function through what Gauss's points see, whatever the mean: on a floor
-// beside a shining wall a corner at the wall gets many times as much as one far from it.
+// A link brings the function through the values that Gauss's points see, whatever the mean: on a
+// floor beside a shining wall a corner at the wall gets many times as much as one far from it.
 TEST(HierarchicalSolve, LinksBringWhatPointsSee) {
   scene::Scene scene;
   const uint32_t dark = scene::add_material(scene, "dark", gray(0));

@@ -8,7 +8,7 @@
 
 namespace luxel::hierarchical {
 
-/// How an element is divided into four: by the middles of its edges; or, a long quadrilateral,
+/// Ways to divide an element into four: by the middles of its edges; or, a long quadrilateral,
 /// across, into a row along its first edge or its last one.
 enum class Parts : uint8_t { quarters, along_first, along_last };
 
@@ -62,8 +62,8 @@ Tree make_tree(std::span<const std::vector<Polygon>> pieces);
 /// and fill it.
 void divide(Tree& tree, size_t element);
 
-/// What a part that divide() makes has at its corners, of what is linear over the whole: places, or
-/// light.
+/// Corner values of a part that divide() makes, for a quantity that is linear over the whole:
+/// places, or light.
 template <class T>
 std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part,
                          Parts parts = Parts::quarters) {
@@ -83,8 +83,9 @@ std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part,
   return {v[part], middle(part), middle(part + 2)};
 }
 
-/// What is bilinear over a quadrilateral, s and t along its first and last edge, or linear over a
-/// triangle, s and t the weights of its second and third corner, from its values at the corners.
+/// A function from its values at the corners: bilinear over a quadrilateral, s and t along its
+/// first and last edge, or linear over a triangle, s and t the weights of its second and third
+/// corner.
 template <class T, class Number>
 T linear_at(const std::array<T, 4>& v, uint32_t n, Number s, Number t) {
   if (n == 3) return v[0] * (1 - s - t) + v[1] * s + v[2] * t;
@@ -100,8 +101,8 @@ std::array<double, 2> place_in(const Element& e, DVec3 place);
 /// The leaf of a face in which a point of its plane lies, or lies next to.
 size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point);
 
-/// How far inside of a convex polygon of this plane a point lies: the least height over its edges
-/// [m], negative outside.
+/// Depth of a point inside a convex polygon of this plane: the least height over its edges [m],
+/// negative outside.
 double depth_inside(PolygonView polygon, DVec3 normal, DVec3 point);
 
 }  // namespace luxel::hierarchical

@@ -49,7 +49,7 @@ Int area2(const Problem& problem, DVec2 a, DVec2 b, DVec2 c) {
   return (n(b.x) - n(a.x)) * (n(c.y) - n(a.y)) - (n(b.y) - n(a.y)) * (n(c.x) - n(a.x));
 }
 
-/// How far d lies inside the circle through a, b, c, as the determinant, rounded to 113 bits.
+/// Depth of d inside the circle through a, b, c, as the determinant, rounded to 113 bits.
 __float128 depth_in_circle(DVec2 a, DVec2 b, DVec2 c, DVec2 d) {
   using Wide = __float128;
   const Wide ax = Wide(a.x) - d.x, ay = Wide(a.y) - d.y, bx = Wide(b.x) - d.x, by = Wide(b.y) - d.y,

@@ -84,7 +84,7 @@ SkyFit fit_of(const Probe& probe, std::span<const Rgb> light) {
       if (mean.*c + out.corner[k].*c < 0) shrink = std::min(shrink, -mean.*c / out.corner[k].*c);
   }
   for (uint32_t k = 0; k < n; ++k) out.corner[k] = mean + out.corner[k] * shrink;
-  // How far that is from the light at all points.
+  // The largest deviation of that from the light at all points.
   for (size_t i = 0; i < probe.at.size(); ++i) {
     const Rgb d = linear_at(out.corner, n, float(probe.at[i][0]), float(probe.at[i][1])) - light[i];
     out.error = std::max({out.error, max_component(d), max_component(-d)});

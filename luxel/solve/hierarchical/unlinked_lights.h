@@ -8,7 +8,7 @@
 
 namespace luxel::hierarchical {
 
-/// What shines besides surfaces.
+/// Lights besides surfaces.
 struct UnlinkedLights {
   light::Lights lights;  ///< no triangles
   bool has_sky = false;  ///< background or a map
@@ -17,7 +17,7 @@ struct UnlinkedLights {
 /// Punctual lights, and whatever background or map the scene has.
 UnlinkedLights unlinked_lights_of(const scene::Scene& scene);
 
-/// What rays towards the sky need.
+/// The scene for rays towards the sky.
 struct SkyScene {
   const scene::Scene& scene;
   const light::Surroundings& around;

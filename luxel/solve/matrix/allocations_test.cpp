@@ -1,4 +1,4 @@
-// What runs per frame asks for no memory. This program's operator new counts.
+// Code that runs per frame asks for no memory. This program's operator new counts.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -46,7 +46,7 @@ namespace {
 
 using testing::Cut;
 
-/// How often `run` allocates, once all threads have been at work.
+/// Allocations of ten calls of `run`, once all threads have been at work.
 template <class Run>
 uint64_t allocations_of(const Run& run) {
   for (int warm_up = 0; warm_up < 3; ++warm_up) run();

@@ -19,7 +19,7 @@
 
 namespace luxel::matrix {
 
-/// What they start as is not all in the paper, but costs no more bytes or time: see paper_params().
+/// The defaults are not all the paper's, but cost no more bytes or time: see paper_params().
 struct Bc1Params {
   float kept = 0.04f;  ///< the part of each row and channel that is kept exact, [0, 1)
   /// e^-log_range of the maximum is the least that 8 bits tell from 0, up to 80 (the paper: 25).
@@ -27,8 +27,8 @@ struct Bc1Params {
   float log_range = 0;
   enum class Order { as_is, rows, rows_and_columns };
   Order order = Order::rows_and_columns;
-  /// What stands in the picture where an entry is kept: 0 (the paper), or what is near it in its
-  /// block, so that the block's other entries keep their levels; then the difference is kept.
+  /// The value in the picture where an entry is kept: 0 (the paper), or the mean of the others in
+  /// its block, which then keep their levels; then the difference is kept.
   enum class Hole { zero, neighbours };
   Hole hole = Hole::neighbours;
   /// Blocks make up for what those before them in their row lost, and each row and channel of the
@@ -74,8 +74,8 @@ inline constexpr uint32_t kMaxBc1Patches = 65536;
 /// outside [0, 1), a range that cannot be, cancelled.
 Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress);
 
-/// Whether a matrix from elsewhere may be multiplied: sizes, permutations, columns, blocks' modes,
-/// numbers that are finite.
+/// True: a matrix from elsewhere may be multiplied. Looks at sizes, permutations, columns and
+/// blocks' modes, and for numbers that are not finite.
 bool is_valid(const Bc1& matrix);
 
 /// Row `row[place]` of the matrix, its columns in K's order, straight from the definition of BC1.

@@ -1,4 +1,4 @@
-// What a block of BC1 says.
+// Decodes blocks of BC1.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline size_t block_index(uint64_t block, size_t row, size_t column) {
   return block >> (32 + 2 * (4 * row + column)) & 3;
 }
 
-/// What the 8 bits stand for.
+/// The values of all 8-bit entries.
 std::array<float, 256> byte_values(float log_range);
 
 }  // namespace luxel::matrix

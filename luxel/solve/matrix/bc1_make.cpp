@@ -70,9 +70,9 @@ uint64_t encode(Pixels& pixels) {
   return (block & 0xffff) == (block >> 16 & 0xffff) ? block & 0xffffffff : block;
 }
 
-/// What blocks so far lack of their entries' sums, channel by channel, as parts of the maxima. A
-/// flat block errs by up to a whole step of 5 bits in all entries, and so do its neighbours, which
-/// are alike; each makes up for what those before it lost, as in error diffusion.
+/// The sums of entries that blocks so far lack, channel by channel, as parts of the maxima. A flat
+/// block errs by up to a whole step of 5 bits in all entries, and so do its neighbours, which are
+/// alike; each makes up for what those before it lost, as in error diffusion.
 struct Carry {
   std::array<float, 256> value;  ///< of a byte
   float log_range = 0;

@@ -32,7 +32,7 @@ struct Sums {
   alignas(64) float lane[3][kBlockLanes] = {};
 };
 
-/// What a product reads.
+/// Input of a product.
 struct Input {
   const Levels *five = nullptr, *six = nullptr;
   const float* light = nullptr;  ///< three planes

@@ -141,7 +141,7 @@ TEST(Bc1, KeepsTheLargestExactly) {
         const float* row = k.channel[c].data() + i * 100;
         std::sort(order.begin(), order.end(),
                   [&](uint32_t a, uint32_t b) { return row[a] > row[b]; });
-        // What is kept is the difference to the rest as a half; neither is above 1 / 100.
+        // Entries keep their difference to the rest as a half; neither is above 1 / 100.
         for (size_t j = 0; j < size_t(share * 100); ++j)
           EXPECT_NEAR(got[i * 100 + order[j]][int(c)], row[order[j]], 0x1p-11f * 0.01f);
       }

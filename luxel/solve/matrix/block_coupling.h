@@ -1,5 +1,5 @@
-// What blocks of clusters exchange, as the functions of their clusters or of those of their parts
-// see it.
+// Light that blocks of clusters exchange, as the functions of their clusters or of those of their
+// parts see it.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ using Coupling = std::array<Values, kFunctions>;
 /// what sums over a row's entries are made of.
 using SenderValues = std::array<float, 8>;
 
-/// What couplings are made of.
+/// Data that couplings are made of.
 struct CouplingSource {
   const FormFactors& factors;
   std::span<const Cluster> clusters;
@@ -54,7 +54,7 @@ struct Parts {
 };
 Parts parts_of(const CouplingSource& s, uint32_t cluster, bool halves);
 
-/// What a block couples, part by part.
+/// The couplings of a block, part by part.
 struct Coupled {
   std::array<std::array<Coupling, 2>, 2> part{};
   std::array<std::array<uint32_t, 2>, 2> entries{};
@@ -67,7 +67,7 @@ Coupled couple(const CouplingSource& s, const Block& block, const Parts& rows, c
 /// The sum of all squares.
 double square_sum(const Coupling& c);
 
-/// What the entries of a block are, and what the noise of the rays makes of that.
+/// Energy of a block's entries, and the part of it that the noise of the rays adds.
 struct Energy {
   double entries = 0;  ///< sum of S_ij^2 / (A_i A_j)
   double noise = 0;    ///< its expected part

@@ -27,7 +27,7 @@ std::vector<uint32_t> cut_of(const ClusterTree& tree, size_t wanted) {
   return cut;
 }
 
-/// What each patch sees of each cluster of a cut, ascending.
+/// Form factors of each patch to clusters of a cut, ascending by cluster.
 struct Views {
   struct Share {
     uint32_t cluster = 0;
@@ -61,7 +61,7 @@ Views views_of(const FormFactors& factors, std::span<const uint32_t> cluster_of,
   return out;
 }
 
-/// How much of what the one sees the other sees as well: sum of the smaller factors.
+/// The part that two views share: sum of the smaller factors.
 float common_view(std::span<const Views::Share> a, std::span<const Views::Share> b) {
   float sum = 0;
   for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {

@@ -31,7 +31,7 @@ CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tre
 /// E = F B for the patches; must not allocate.
 using Multiply = std::function<void(std::span<const Rgb> radiosity, std::span<Rgb> irradiance)>;
 
-/// What patches send and reflect.
+/// Light that patches send on their own, and what they reflect of the rest.
 struct Sent {
   std::span<const Rgb> radiosity;    ///< what patches send on their own: B_e + rho D [W/m^2]
   std::span<const Rgb> reflectance;  ///< per patch

@@ -14,7 +14,7 @@ Multiply plain(const FormFactors& f) {
   return [&f](std::span<const Rgb> b, std::span<Rgb> e) { testing::plain_product(f, b, e); };
 }
 
-/// What bounces are made of.
+/// Data that bounces are made of.
 struct Room {
   FormFactors factors;
   ClusterTree tree;

@@ -9,7 +9,7 @@
 namespace luxel::matrix {
 namespace {
 
-/// What any tree over `count` patches must be.
+/// Expects what is true of any tree over `count` patches.
 void expect_tree(const ClusterTree& tree, uint32_t count, uint32_t leaf_size) {
   ASSERT_FALSE(tree.clusters.empty());
   EXPECT_EQ(std::set<uint32_t>(tree.order.begin(), tree.order.end()).size(), count);

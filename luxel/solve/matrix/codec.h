@@ -1,4 +1,4 @@
-// What all codecs are asked: irradiance from what patches send, after all bounces.
+// The question to all codecs: irradiance from what patches send, after all bounces.
 #pragma once
 
 #include "luxel/solve/matrix/relight_data.h"
@@ -20,7 +20,7 @@ CodecScratch make_scratch(const Codec& codec, size_t patches);
 void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradiance,
                    CodecScratch& scratch);
 
-/// What the codec keeps.
+/// Memory of the data that the codec keeps [bytes].
 uint64_t bytes_of(const Codec& codec);
 
 }  // namespace luxel::matrix

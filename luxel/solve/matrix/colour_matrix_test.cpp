@@ -11,7 +11,7 @@ namespace {
 
 using testing::Cut;
 
-/// What a matrix is made of.
+/// Data that a matrix is made of.
 struct ColourRoom {
   FormFactors factors;
   std::vector<float> area_m2;

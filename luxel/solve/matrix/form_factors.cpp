@@ -16,7 +16,7 @@ namespace {
 /// Directions are sorted into 8 x 8 cells, so that rays of a packet go the same way.
 constexpr int kCellsPerAxis = 8;
 
-/// What a thread needs to look from one patch.
+/// Buffers of a thread to look from one patch.
 struct RayBuffers {
   explicit RayBuffers(size_t rays) : u(rays), v(rays), ray(rays), hit(rays) {}
   std::vector<float> u, v;

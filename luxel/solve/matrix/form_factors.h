@@ -27,7 +27,7 @@ struct FormFactors {
   }
 };
 
-/// How many rays look for form factors.
+/// Settings of the rays that look for form factors.
 struct FactorParams {
   int rays_per_patch = 2048;  ///< cosine-distributed, from the patch's points
   uint64_t seed = 1;

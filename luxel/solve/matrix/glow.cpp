@@ -22,8 +22,8 @@ Rgb one_over(Rgb c) {
   return {inverse(c.x), inverse(c.y), inverse(c.z)};
 }
 
-/// What takes more than this part of the surfaces is left to the rays of the patches, which find
-/// all of it: shadow rays towards lamps all around are less even.
+/// A material that takes more than this part of the surfaces is left to the rays of the patches,
+/// which find all of it: shadow rays towards lamps all around are less even.
 constexpr float kMostOfAll = 0.5f;
 
 /// E of all patches per material, where it sends any.

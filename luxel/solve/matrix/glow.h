@@ -11,9 +11,9 @@
 
 namespace luxel::matrix {
 
-/// What patches get straight from each material that they see. A small lamp is a single patch or
-/// two, and as sharp as a point light: what a codec or few rays make of it is noise. So it is kept
-/// as it is, and codecs hold what is reflected.
+/// Light that patches get straight from each material that they see. A small lamp is a single patch
+/// or two, and as sharp as a point light: a codec or few rays make noise of it. So its light is
+/// kept as it is, and codecs hold what is reflected.
 struct Glow {
   std::vector<uint32_t> first;     ///< per patch, one extra entry; empty: nothing is kept
   std::vector<uint32_t> material;  ///< of the scene, ascending for each patch

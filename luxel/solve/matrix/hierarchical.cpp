@@ -21,14 +21,14 @@ bool touching(const CouplingSource& s, const Block& block) {
   return length(a.centre - b.centre) < kTouching * (a.radius_m + b.radius_m);
 }
 
-/// How much energy a block may lose. Light of 1 on all of a cluster has the energy of its area, so
-/// what a block of large clusters loses counts for more.
+/// Energy that a block may lose. Light of 1 on all of a cluster has the energy of its area, so the
+/// loss of a block of large clusters counts for more.
 double limit_of(const CouplingSource& s, const Block& block, double block_error) {
   const double area = 0.5 * (s.cluster_m2[block.receiver] + s.cluster_m2[block.sender]);
   return block_error * block_error * s.leaf_m2 / area;
 }
 
-/// Whether a block loses little, or noise.
+/// A block loses no more than its limit and a part of its noise.
 bool is_smooth(const CouplingSource& s, const HierarchicalParams& params, const FarBlock& far) {
   return far.lost <=
          limit_of(s, far.block, double(params.block_error)) + double(params.noise) * far.noise;

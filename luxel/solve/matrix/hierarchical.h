@@ -80,7 +80,7 @@ class Compression {
   Compression(const Compression&) = delete;
   Compression& operator=(const Compression&) = delete;
 
-  /// What compress() would give, to the bit. params.block_error and params.noise are no larger than
+  /// The result of compress(), to the bit. params.block_error and params.noise are no larger than
   /// at the step before, params.rays_per_patch is not looked at. Errors: cancelled, after which
   /// there are no more steps.
   Result<Hierarchical> step(const HierarchicalParams& params, Progress& progress);

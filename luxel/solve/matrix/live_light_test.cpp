@@ -24,7 +24,7 @@ struct LiveStage {
       : scene(std::move(s)), tracer(*trace::RayTracer::build(scene)) {}
 };
 
-/// What lamps shine on.
+/// Places that lamps shine on.
 struct Ground {
   std::vector<Vec3> position, normal, geometric_normal;
 

@@ -37,8 +37,8 @@ Result<Spectrum> spectrum_of(const FormFactors& factors, std::span<const float> 
 /// eigenvalues for light that is independent from patch to patch, the worst there is.
 double lost(const Spectrum& spectrum, size_t rank);
 
-/// How many eigenvalues are `smallest` or larger by absolute value. What a product by them misses
-/// is at most that part of the light sent, in the norm sqrt(sum A_i B_i^2). Noise of the rays has
+/// Number of eigenvalues that are `smallest` or larger by absolute value. A product by these misses
+/// at most `smallest` of the light sent, in the norm sqrt(sum A_i B_i^2). Noise of the rays has
 /// eigenvalues up to about 2 / sqrt(2 rays per patch): to keep those is to learn noise by heart.
 size_t rank_above(const Spectrum& spectrum, float smallest);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Dense64 = Eigen::MatrixXd;
 
-/// What the codec is made from.
+/// Data that the codec is made from.
 struct LowrankRoom {
   FormFactors factors;
   std::vector<float> area_m2;

@@ -1,6 +1,6 @@
-// What the structs of an .lxr file hold, in the order of the file: docs/format/lxr.md has the same
+// Fields of the structs of an .lxr file, in the order of the file: docs/format/lxr.md has the same
 // lists. A field added, removed or moved makes a new major version of the format (lxr.h). Structs
-// are taken apart by name: one that has a field more than is said here does not compile.
+// are taken apart by name: one with a field more than is listed here does not compile.
 #pragma once
 
 #include "luxel/solve/matrix/archive.h"

@@ -201,7 +201,7 @@ TEST(Lxr, ReadsNothingElse) {
     EXPECT_THAT(error_of(Bytes(bytes.begin(), bytes.end())),
                 HasSubstr("a.lxr: is not an .lxr file"));
   }
-  // What text mode does to line ends.
+  // Text mode turns the CR LF of the magic into LF.
   Bytes file = encode_lxr(small_data());
   file.erase(file.begin() + 4);
   EXPECT_THAT(error_of(file), HasSubstr("is not an .lxr file"));
@@ -230,9 +230,9 @@ TEST(Lxr, SkipsChunksOfANewerMinorVersion) {
   expect_same(*back, small_data());
 }
 
-/// What a file before 1.2 holds, which has its places on the surface: 2^-18 of a largest coordinate
-/// of 9, 3, and 3 at least below where they are then, and never of less than the occluders' box,
-/// whose diagonal is the root of 3.
+/// Data as decode_lxr() makes it of a file before 1.2, whose places lie on the surface. Each is
+/// lifted by 2^-18 of its largest coordinate, or of the diagonal of the occluders' box, the root of
+/// 3, where that is larger.
 RelightData lifted(RelightData data) {
   const auto lift = [](Vec3& p, Vec3 normal, float size) { p += normal * (0x1p-18f * size); };
   for (size_t i = 0; i < data.position.size(); ++i)
@@ -298,7 +298,7 @@ TEST(Lxr, SaysWhereAListIsTooLong) {
                         " elements of 12 bytes or more"));
 }
 
-/// What a player does with it; the sanitizers watch.
+/// Plays data as a player does; the sanitizers watch.
 void play(const RelightData& data) {
   CodecScratch scratch = make_scratch(data.codec, data.size());
   std::vector<Rgb> e(data.size()), of_place(data.target.transfer.size());

@@ -1,4 +1,4 @@
-// What tests of the .lxr file share: small data, and files made by a hand that is not encode_lxr's.
+// Helpers for tests of the .lxr file: small data, and files that encode_lxr() has not written.
 #pragma once
 
 #include <cstring>

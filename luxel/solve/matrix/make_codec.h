@@ -7,7 +7,7 @@
 
 namespace luxel::matrix {
 
-/// What codecs are made of.
+/// Input of a codec.
 struct CodecInput {
   const Prepared& prepared;
   const CoarseScene& coarse;

@@ -17,7 +17,7 @@ void multiply(const FormFactors& factors, std::span<const std::span<const Rgb>> 
 /// Light of all patches, light by light.
 using ManyLights = std::vector<std::vector<Rgb>>;
 
-/// What several lights send, and the patches that reflect it.
+/// Light that patches send by each of several lights, and the patches' properties.
 struct SentByMany {
   const ManyLights& radiosity;       ///< what patches send on their own: B_e + rho D [W/m^2]
   std::span<const Rgb> reflectance;  ///< per patch

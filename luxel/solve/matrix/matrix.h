@@ -9,7 +9,7 @@
 
 namespace luxel::matrix {
 
-/// What the matrix solver is asked for.
+/// Settings of the matrix solver.
 struct MatrixParams {
   PatchParams patches;
   FactorParams factors;
@@ -27,7 +27,7 @@ struct Prepared {
   uint64_t rays = 0;
 };
 
-/// What preparation holds at most, about.
+/// Memory that preparation holds at most, about [bytes].
 uint64_t bytes_of_preparation(size_t patches, int rays_per_patch);
 
 /// Patches and the exchange between them, whose rays the members of a team share out. Errors: no

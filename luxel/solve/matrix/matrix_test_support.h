@@ -1,4 +1,4 @@
-// What the tests of the matrix solver share: small scenes, their patches and their factors.
+// Helpers for tests of the matrix solver: small scenes, their patches and their factors.
 #pragma once
 
 #include <gtest/gtest.h>

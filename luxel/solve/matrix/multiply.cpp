@@ -92,7 +92,7 @@ void hand_down(const Hierarchical& m, std::span<Moments> received) {
         }
 }
 
-/// What a leaf's patches receive from near ones, channel by channel.
+/// Irradiance of a leaf's patches from near ones, channel by channel.
 LUXEL_VECTOR_CLONES
 void receive_near(const Hierarchical& m, size_t leaf, std::span<const Rgb> radiosity,
                   float (*out)[kLeafSize]) {

@@ -14,8 +14,8 @@ constexpr int kAxisBits = 21;
 constexpr uint64_t kAxisMask = (uint64_t(1) << kAxisBits) - 1;
 /// Slots of voxels that lie side by side along x share a line of the cache.
 constexpr size_t kSlotsPerLine = 4;
-/// How far above their surfaces two places look for each other, in voxels: over the unevenness of a
-/// surface, not over a wall.
+/// Two places look for each other from so far above their surfaces, in voxels: over the unevenness
+/// of a surface, not over a wall.
 constexpr float kLift = 0.05f;
 
 /// A place so far above its surface; half as far as the surface above it, where that is nearer. In

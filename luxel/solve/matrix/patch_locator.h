@@ -37,7 +37,7 @@ inline bool is_covered(const trace::RayTracer& tracer, const PatchPoint& p, cons
   return open_share(tracer, p, grid) < 1;
 }
 
-/// Whether two places of surfaces see each other from a little above their surfaces.
+/// True where two places of surfaces see each other from a little above their surfaces.
 bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
                     float voxel_m);
 

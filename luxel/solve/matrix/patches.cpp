@@ -29,7 +29,7 @@ struct Sample {
 
 using OpenBacks = std::optional<std::vector<std::vector<uint8_t>>>;
 
-/// Whether light gets behind a surface and is reflected there.
+/// True where light gets behind a surface and is reflected there.
 bool has_open_back(const scene::Scene& scene, const scene::SurfacePoint& p,
                    const OpenBacks& open_backs) {
   const uint32_t m = scene.instances[p.instance].mesh;
@@ -207,7 +207,7 @@ struct Source {
   const OpenBacks& open_backs;
 };
 
-/// Whether most of a few rays from a part's samples meet backs that no light gets behind.
+/// True where most of a few rays from a part's samples meet backs that no light gets behind.
 bool is_hidden(const Source& source, std::span<const Sample> samples, const Part& part,
                float voxel_m) {
   constexpr uint32_t kRays = 32;
@@ -369,7 +369,7 @@ PatchedScene assemble(std::span<const Sample> samples, std::span<const Part> par
     number[out.tree.order[k]] = k, out.tree.order[k] = k;
   }
   out.patches.first_point.push_back(uint32_t(out.patches.points.size()));
-  // What rays find them by.
+  // The locator, by which rays find the patches.
   std::vector<PatchLocator::Part> known;
   std::vector<uint64_t> voxel;
   for (size_t p = 0; p < parts.size(); ++p) {

@@ -19,7 +19,7 @@ namespace luxel::matrix {
 
 inline constexpr size_t kMaxPatches = 1u << 20;
 
-/// How finely surfaces are divided.
+/// Settings by which surfaces are divided.
 struct PatchParams {
   size_t count = 8192;        ///< about so many
   int points_per_patch = 48;  ///< on average: they are what a patch is made of

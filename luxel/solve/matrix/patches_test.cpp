@@ -197,7 +197,7 @@ TEST(Patches, ReflectWhatTheirTextureDoes) {
   EXPECT_NEAR(mean, 0.4, 0.008);
 }
 
-/// How many points of patches lie on the floor within 2 cm of a place.
+/// Number of the patches' points on the floor within 2 cm of a place.
 size_t floor_points_at(const Cut& cut, float x, float z) {
   const std::vector<PatchPoint>& points = cut.patches().points;
   return size_t(std::count_if(points.begin(), points.end(), [&](const PatchPoint& p) {

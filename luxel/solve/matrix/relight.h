@@ -8,12 +8,12 @@
 
 namespace luxel::matrix {
 
-/// How an .lxr file holds its matrix; docs/method/relight.md compares them.
+/// Forms of the matrix in an .lxr file; docs/method/relight.md compares them.
 enum class CodecKind : uint8_t { hierarchical, lowrank, bc1, dense32, dense16 };
 
 /// A matrix of all pairs takes 4 to 12 bytes each, and several of them while it is made.
 inline constexpr size_t kMaxDensePatches = 20000;
-/// Whether making the codec holds a number for every pair of patches.
+/// True: making the codec holds a number for every pair of patches.
 constexpr bool looks_at_all_pairs(CodecKind kind) {
   return kind != CodecKind::hierarchical && kind != CodecKind::lowrank;
 }
@@ -22,12 +22,12 @@ constexpr bool looks_at_all_pairs(CodecKind kind) {
 /// functions over fewer clusters were tried: they do no better for as many numbers.
 inline constexpr size_t kCoarseClusters = 300;
 
-/// What an .lxr file is made with.
+/// Settings by which an .lxr file is made.
 struct RelightParams {
   PatchParams patches;
   FactorParams factors;
   CodecKind codec = CodecKind::hierarchical;
-  /// What a codec may lose: relative root mean square error of the indirect light over all patches
+  /// Error that a codec may have: relative root mean square of the indirect light over all patches
   /// (by area), by usual_error().
   float max_error = 0.01f;
   int bounces = -1;  ///< products; < 0: all

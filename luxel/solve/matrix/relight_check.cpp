@@ -49,8 +49,8 @@ Status within(std::string_view what, const List& list, double lower, double uppe
                   in_words(list[k]), lower, upper);
   return {};
 }
-/// What rays meet and leave from: more would abort in the ray tracer. Places on surfaces and just
-/// off them may round to a little more than the corners have.
+/// Checks coordinates of places that rays meet or leave from: larger ones would abort in the ray
+/// tracer. Places on surfaces and just off them may round to a little more than the corners have.
 template <class List>
 Status placed(std::string_view what, const List& list, double room = 1) {
   const double most = double(scene::kFarthest_m) * room;

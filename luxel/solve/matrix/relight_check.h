@@ -1,4 +1,4 @@
-// Whether data can be played at all: the content of a file may be anything.
+// Checks that data can be played: the content of a file may be anything.
 #pragma once
 
 #include "luxel/base/result.h"

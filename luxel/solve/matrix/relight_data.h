@@ -1,4 +1,4 @@
-// What a scene leaves behind so that its light can move: the content of an .lxr file.
+// Data of a scene by which its light can move later: the content of an .lxr file.
 #pragma once
 
 #include <array>
@@ -60,7 +60,7 @@ struct Target {
   Transfer transfer;                           ///< from patches to places
 };
 
-/// What throws shadows: both sides of all triangles block.
+/// Triangles that throw shadows: both sides of all of them block.
 struct Occluders {
   std::vector<Vec3> position;
   std::vector<std::array<uint32_t, 3>> triangle;

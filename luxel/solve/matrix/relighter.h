@@ -11,19 +11,19 @@
 
 namespace luxel::matrix {
 
-/// What shines on a relit scene.
+/// Light sources of a relit scene.
 struct RelightLights {
   std::span<const scene::PunctualLight> punctual{};  ///< without profiles
   /// Radiance L of each material of RelightData::material_name [W/(sr m^2)]; empty: as baked. A
   /// material that glowed unevenly keeps its pattern, and L is its mean.
   std::span<const Rgb> emission{};
   Rgb background{};  ///< radiance of the surroundings
-  /// What `punctual` make at each of RelightData::probe [W/m^2], from who has maps of shadows;
-  /// empty: shadow rays are traced, towards those of the first 16 alone that have changed.
+  /// Irradiance by `punctual` at each of RelightData::probe [W/m^2], from callers that have shadow
+  /// maps. Empty: shadow rays are traced; of the first 16 lights, only for those that have changed.
   std::span<const Rgb> direct_at_probes{};
 };
 
-/// What they make of it. Per patch, and per point of RelightData::target, a texel or a vertex.
+/// Light of an update, per patch, and per point of RelightData::target, a texel or a vertex.
 struct Relit {
   uint64_t update = 0;                ///< how many there were before, and this one; 0: none yet
   std::vector<Rgb> direct;            ///< E straight from punctual lights [W/m^2]
@@ -32,7 +32,7 @@ struct Relit {
   std::vector<Rgb> indirect_at_points;
 };
 
-/// What a relighter computes besides.
+/// Further results that a relighter computes.
 struct RelighterParams {
   /// Direct light at points, too, by a shadow ray per point and light; for programs that do not
   /// draw direct light themselves.
@@ -54,7 +54,7 @@ class Relighter {
   Relighter& operator=(Relighter&&) noexcept;
   ~Relighter();
 
-  /// What make() was given. It does not change.
+  /// The data that make() was given. It does not change.
   const RelightData& data() const;
 
   /// E after all bounces of the lights, shadows by rays. One thread at a time.
@@ -64,13 +64,13 @@ class Relighter {
   /// the same thread calls latest() again. One thread at a time, maybe another than update()'s.
   const Relit& latest();
 
-  /// What the last update() took [s]; asked on its thread.
+  /// Times of the last update() [s].
   struct Seconds {
     double direct = 0, bounces = 0, places = 0;
     /// All parts together [s].
     double total() const { return direct + bounces + places; }
   };
-  /// What the last update() took; asked on its thread.
+  /// Times of the last update(); to be called on its thread.
   Seconds seconds() const;
 
  private:

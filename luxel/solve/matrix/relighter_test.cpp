@@ -121,7 +121,7 @@ TEST(Relighter, TheFurnaceGlowsEvenly) {
     for (const auto* list : {&got.indirect, &got.indirect_at_points}) {
       const std::vector<Rgb> even(list->size(), want);
       const std::vector<float> one(list->size(), 1.0f);
-      // What lamps may lose is 1 %, root mean square; light from everywhere loses less.
+      // The light of lamps may err by 1 %, root mean square; light from everywhere errs less.
       EXPECT_LT(relative_error(*list, even, one), 0.01) << int(codec);
       // Rows sum to 1 within 1e-3 (see Reciprocal.KeepsRowSums), which 1 / (1 - rho) doubles; 0.6
       // of max_error more may be missing after the sweeps.
@@ -254,7 +254,7 @@ TEST(Relighter, FollowsWhicheverLampChanges) {
   EXPECT_EQ(relit(relighter, {lamps}).direct, relit(fresh, {lamps}).direct);
 }
 
-// Who knows the light of probes is believed.
+// Direct light given at the probes takes the place of the lamp that makes it.
 TEST(Relighter, TakesDirectLightOfProbes) {
   const Stage stage(scene::cornell_box());
   Relighter relighter = relighter_of(stage.data());

@@ -1,4 +1,4 @@
-// What the tests of relighting share: a scene prepared, lamps, and places to light.
+// Helpers for tests of relighting: a scene prepared, lamps, and places to light.
 #pragma once
 
 #include <gtest/gtest.h>

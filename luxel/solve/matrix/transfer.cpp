@@ -13,20 +13,20 @@
 namespace luxel::matrix {
 namespace {
 
-/// How far patches count, in voxels; pi 1.8^2 = 10 squares lie within on a flat surface, and about
-/// eight patches. Fewer leave a plane to noise, more blur light.
+/// Patches count up to this distance, in voxels. pi 1.8^2 = 10 squares lie within on a flat
+/// surface, and about eight patches. Fewer leave a plane to noise, more blur light.
 constexpr float kReach = 1.8f;
 constexpr int kVoxels = 2;
-/// How much more near ones count: at a third of the reach half as much as at the place. Together
-/// with this reach it errs by a tenth less in the Cornell box and in a living room with its walled
-/// garden than a reach of 2.2 without it, against a path tracer (luxel bench relight).
+/// Near patches count more: at a third of the reach half as much as at the place. The reach of 1.8
+/// with this errs by a tenth less than one of 2.2 without it, against a path tracer in the Cornell
+/// box and in a living room with its walled garden (luxel bench relight).
 constexpr float kNearness = 10;
 /// Patches that face away by more than 60 degrees have light of their own.
 constexpr float kAlike = 0.5f;
 /// Patches off the plane of the place count less, at this many voxels half as much: another step of
 /// the surface has another horizon.
 constexpr float kOffPlane = 0.35f;
-/// What a slope costs beside the squares that it is fitted to, against noise and extrapolation
+/// Penalty of a slope, added to the squares that it is fitted to, against noise and extrapolation
 /// where patches lie on one side only. By the kernel below, places have a variance of 0.078 in
 /// units of the reach; slopes are flattened by 0.001 / (0.078 + 0.001) = 1 %. Ten times as much
 /// errs by 2 % more in living_room and the Cornell box (luxel bench relight), a third of it by no
@@ -40,9 +40,9 @@ struct Share {
   float weight = 0;
 };
 
-/// How much a patch counts at a place, before planes are fitted; 0 beyond the reach. Patches that
-/// face another way see another part of the scene, as on both sides of a crease: 30 degrees leave a
-/// third.
+/// Weight of a patch at a place, before planes are fitted; 0 beyond the reach. Patches that face
+/// another way see another part of the scene, as on both sides of a crease: an angle of 30 degrees
+/// leaves a third.
 float kernel(Vec3 to_patch, float cosine, Vec3 normal, float voxel_m) {
   const float reach_m = kReach * voxel_m;
   const float distance2 = dot(to_patch, to_patch) / (reach_m * reach_m);
@@ -79,14 +79,15 @@ void fit_plane(std::span<const Vec3> centroid, Vec3 position, Vec3 normal, float
     shares[k].weight = good ? fitted[k] / total : shares[k].weight / float(sum);
 }
 
-/// What a thread needs.
+/// Buffers of a thread.
 struct Scratch {
   std::vector<uint32_t> near;
   std::vector<Share> shares;
 };
 
-/// Whether most of a few rays from a place meet backs: it lies inside a solid, where no patch is.
-/// Places just under a surface that faces the same way do not: their light is that surface's.
+/// True where most of a few rays from a place meet backs: it lies inside a solid, where no patch
+/// is. Places just under a surface that faces the same way are not inside: their light is that
+/// surface's.
 bool is_inside_solid(const PatchedScene& patched, const trace::RayTracer& tracer, Vec3 position,
                      Vec3 normal) {
   constexpr uint32_t kRays = 32;

@@ -34,7 +34,7 @@ constexpr uint32_t kLooks = 64;
 /// comes back, and what is lost of it says nothing.
 constexpr float kInside = 0.6f;
 
-/// How far the nearest surface is, by rays in all directions; 0 outside of rooms.
+/// Distance to the nearest surface [m], by rays in all directions; 0 outside of rooms.
 float room_around(const trace::RayTracer& tracer, Vec3 place) {
   float nearest = INFINITY;
   uint32_t met = 0;
@@ -83,7 +83,7 @@ double relative_square(std::span<const Rgb> got, std::span<const Rgb> wanted,
   return all > 0 ? error / all : 0;
 }
 
-/// What the light of a trial errs by, root mean square.
+/// Error of a trial's light, relative root mean square.
 double rms_error(const Trials& trials, size_t trial, std::span<const Rgb> got,
                  std::span<const float> area_m2) {
   return std::sqrt(relative_square(got, trials.irradiance[trial], trials.straight[trial], area_m2));
@@ -94,7 +94,7 @@ constexpr int kManySweeps = 12;
 /// ... or fewer, after one that changed no light by more than this part of it.
 constexpr double kConverged = 1e-6;
 
-/// What all trials get of what they send, by all bounces, and what fewer sweeps err by.
+/// Finds the irradiance of all trials by all bounces, and the errors of fewer sweeps.
 Status follow_all_bounces(const Prepared& prepared, const CoarseScene& coarse, Trials& trials,
                           Progress& progress) {
   const Patches& patches = prepared.patched.patches;
@@ -129,7 +129,7 @@ struct Light {
   std::vector<Rgb> direct, straight;
 };
 
-/// What trials are made of.
+/// The prepared scene in which lights are tried, and its probes.
 struct Stage {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -228,7 +228,7 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
   if (params.glow)
     for (Light& light : own_lights(stage, *params.glow, params.seed))
       lights.push_back(std::move(light));
-  // What all of them reflect at first, and what they get of that.
+  // Light that the patches reflect first, trial by trial, and the irradiance that follows from it.
   Trials out;
   for (Light& light : lights) {
     std::vector<Rgb> sent(patches.size());

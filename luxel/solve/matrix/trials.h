@@ -24,8 +24,8 @@ struct Trials {
   std::vector<std::vector<Rgb>> straight;    ///< E from glowing surfaces and the background
   std::vector<std::vector<Rgb>> irradiance;  ///< E from `sent`
 
-  /// What all_bounces with the factors themselves errs by in each trial, for 1, 2, ... sweeps, and
-  /// the most that were tried; empty where bounces are counted.
+  /// Number [k][t] is the error of all_bounces() with the factors themselves in trial t after k + 1
+  /// sweeps, up to the most that were tried. Empty where bounces are counted.
   std::vector<std::vector<double>> error_of_sweeps;
 
   /// The first of them are point lights in the open, then come some anywhere.
@@ -57,8 +57,8 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
 /// less, by usual_error().
 int enough_sweeps(const Trials& trials, double error);
 
-/// What the plain iteration with the factors themselves errs by after 1, 2, ..., `products` of
-/// them.
+/// Errors of the plain iteration with the factors themselves after 1, 2, ..., `products` of them,
+/// root mean square over all trials.
 std::vector<double> errors_of_products(const Prepared& prepared, const Trials& trials,
                                        int products);
 
@@ -72,12 +72,13 @@ std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Pa
 std::vector<double> errors_until(const Codec& codec, const Trials& trials, const Patches& patches,
                                  int bounces, std::span<const double> before, double most);
 
-/// What codecs are held to, of errors_of(): root mean square over the point lights in the open, or
-/// the most of the other lights, but for point lights anywhere.
+/// The error that codecs are held to, from errors_of(): root mean square over the point lights in
+/// the open, or the largest of the other lights if that is more. Point lights anywhere do not
+/// count.
 double usual_error(const Trials& trials, std::span<const double> errors);
 
-/// What a light that was not tried seldom exceeds: the most of errors_of(), or, if that is more,
-/// the mean and some standard deviations over the point lights anywhere.
+/// An error that lights which were not tried seldom exceed: the most of errors_of(), or, if that is
+/// more, the mean and some standard deviations over the point lights anywhere.
 double largest_error(const Trials& trials, std::span<const double> errors);
 
 }  // namespace luxel::matrix

@@ -1,4 +1,4 @@
-// What a packet of rays asks of Embree, and what surfaces that let light through answer.
+// Queries of ray packets to Embree, and the answers of surfaces that let light through.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -20,7 +20,7 @@ inline uint32_t instance_of(uint32_t instance_id, uint32_t geometry_id) {
   return instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id;
 }
 
-/// What a query does with the light of a packet's rays that goes straight through surfaces.
+/// Treatment of the light of a packet's rays that goes straight through surfaces.
 enum class Through : uint8_t {
   chance,  ///< let the ray through or not
   none,    ///< stop it, unless nothing is there

@@ -47,7 +47,7 @@ void with_packets(bool has_wide_vectors, const Work& work) {
     work(Packet8{});
 }
 
-/// What all rays have alike, packet after packet.
+/// Sets the fields that are the same for all rays, packet after packet.
 template <class P>
 void begin_packets(typename P::Rays& out) {
   for (unsigned i = 0; i < P::kRays; ++i)
@@ -124,7 +124,7 @@ void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, Pac
       for (unsigned i = 0; i < P::kRays; ++i)
         packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
       P::intersect(valid, impl_->top, &query.context, &packet);
-      // What they hit, and whether it shows its front.
+      // The surfaces that they hit, on the front or the back.
       for (unsigned i = 0; i < count; ++i) {
         Hit& hit = hits[first + i];
         if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
@@ -164,7 +164,7 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) 
 
 namespace {
 
-/// What is_empty() hands to Embree's callback.
+/// Data that is_empty() hands to Embree's callback.
 struct BoxQuestion {
   const scene::Scene& scene;
   const TurnedBox& box;
@@ -172,7 +172,7 @@ struct BoxQuestion {
   bool is_empty = true;
 };
 
-/// Whether a triangle lies beyond one of the box's sides.
+/// True where all of a triangle lies beyond one of the box's sides.
 bool is_outside(const scene::Triangle3& t, const TurnedBox& box) {
   const std::array<float, 3> half{box.half_m.x, box.half_m.y, box.half_m.z};
   for (size_t k = 0; k < 3; ++k) {

@@ -29,7 +29,7 @@ struct RayTracer::Impl {
   bool has_tints = false;
   size_t sorted_triangles = 0;
 
-  /// Whether the packets of so many rays are traced as coherent ones.
+  /// True: the packets of a batch of so many rays are traced as coherent ones.
   bool is_coherent(Packets packets, size_t rays) const {
     if (has_shared_meshes || packets == Packets::any) return false;
     if (packets == Packets::bundles) return true;
@@ -55,7 +55,7 @@ struct RayTracer::Impl {
     const Vec3 n = m[0] * object_normal.x + m[1] * object_normal.y + m[2] * object_normal.z;
     return dot(n, direction) > 0;
   }
-  /// What has two sides is met on the side that the ray comes from.
+  /// Moves a hit on the back of a two-sided surface to the side that the ray comes from.
   void turn_to_ray(Hit& hit) const {
     if (!hit.back_face) return;
     if (const auto other = scene::other_side_of(*scene, hit.point()))

@@ -1,4 +1,4 @@
-// What the ray tracer of the processor is.
+// Version and packets of Embree, the ray tracer of the processor.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ static_assert(sizeof(DeviceTriangle) == 48);
 void add_triangles(const scene::Mesh& mesh, const Mat34& world_from_object, uint32_t first,
                    std::vector<DeviceTriangle>& out);
 
-/// What a node's child is: another node, or a few triangles that follow each other.
+/// A node's child: another node, or a few triangles in a row.
 struct ChildRef {
   static constexpr uint32_t kLeaf = 1u << 31;
   /// Three bits for a count. 7 stands for an instance on the stacks of devices (binary.glsl).

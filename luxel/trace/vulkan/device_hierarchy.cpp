@@ -96,7 +96,7 @@ void place_instances(const scene::Scene& scene, const StoredTriangles& stored, s
     }
 }
 
-/// How far from the origin of a mesh's space rays of the scene may begin.
+/// Reach of the scene's rays in a mesh's space, the largest over its instances.
 float reach_in(const SharedMesh& mesh, const scene::Scene& scene, const Box3& world) {
   float out = 0;
   for (const uint32_t i : mesh.instances)

@@ -11,7 +11,7 @@
 
 namespace luxel::trace {
 
-/// How triangles are sorted.
+/// Kinds of hierarchy into which triangles are sorted.
 enum class HierarchyKind : uint8_t {
   binary,  ///< two children a node, with boxes of floats
   wide,    ///< eight, with boxes of bytes

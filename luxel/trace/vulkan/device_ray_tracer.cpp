@@ -94,7 +94,7 @@ Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device,
   const HierarchyKind kind = faster_hierarchy(device);
   auto built = build(device, scene, kind);
   if (built || kind != HierarchyKind::driver) return built;
-  // What the driver's form cannot have, luxel's own may.
+  // luxel's own hierarchy may hold a scene that the driver's cannot.
   return build(device, scene, own_hierarchy(device));
 }
 

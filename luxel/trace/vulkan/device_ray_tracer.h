@@ -1,4 +1,4 @@
-// What rays meet, found by a graphics device.
+// Finds the surfaces that rays meet, on a graphics device.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ struct DeviceRays {
   gpu::Buffer hits;  ///< DeviceHit of each, once closest_hits() has run
 };
 
-/// What a ray meets, as devices leave it.
+/// A ray's hit, as devices leave it.
 struct DeviceHit {
   float t = 0, u = 0, v = 0;
   uint32_t number = 0;  ///< of the drawn triangle, kBackFace added; or kNoTriangle
@@ -103,7 +103,7 @@ class DeviceRayTracer {
   std::vector<uint32_t> first_triangle_;
   size_t triangle_count_ = 0;
   HierarchyKind kind_ = HierarchyKind::binary;
-  // Whether some triangle does, and whether meshes are shared: shaders without are faster.
+  // Some triangle lets light through; meshes are shared. Shaders without either are faster.
   bool lets_light_through_ = false, has_instances_ = false;
   gpu::Buffer nodes_, triangles_;
   DriverAcceleration driver_;  ///< instead of nodes_; ends before triangles_

@@ -41,7 +41,7 @@ inline constexpr size_t kMostInPart = size_t(1) << 21;
 Result<DriverHierarchy> driver_hierarchy(const scene::Scene& scene, size_t max_flat_triangles,
                                          size_t most_in_part = kMostInPart);
 
-/// What the driver has made of it.
+/// Acceleration structures that the driver builds of a DriverHierarchy.
 struct DriverAcceleration {
   std::vector<gpu::Acceleration> parts;
   gpu::Acceleration world;  ///< of the parts, where they stand

@@ -1,4 +1,4 @@
-// What devices know of surfaces that let light through: masks, blended and transmissive ones.
+// Surfaces that let light through, as devices know them: masks, blended and transmissive ones.
 #pragma once
 
 #include <array>

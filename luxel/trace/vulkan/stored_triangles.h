@@ -1,4 +1,4 @@
-// What a hierarchy on a device is made of: triangles of the world, and meshes that several
+// Triangles of a hierarchy on a device: those of the world, and those of meshes that several
 // instances share.
 #pragma once
 

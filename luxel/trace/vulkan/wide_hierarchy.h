@@ -35,8 +35,7 @@ struct WideHierarchy {
 /// rounding moves a ray by that begins so far from the origin.
 WideHierarchy widen(const BinaryHierarchy& binary, float reach);
 
-/// How far from the origin rays may begin that begin in a box: its diagonal and its largest
-/// coordinate.
+/// Reach about the origin of rays that begin in a box: its diagonal plus its largest coordinate.
 float reach_of(const Box3& box);
 
 }  // namespace luxel::trace

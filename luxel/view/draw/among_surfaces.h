@@ -1,4 +1,4 @@
-// What shaders have in common whose triangles stand among the surfaces of a scene.
+// Parameters shared by shaders whose triangles stand among the surfaces of a scene.
 #pragma once
 
 #include "luxel/gpu/pipeline.h"

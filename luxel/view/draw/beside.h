@@ -5,7 +5,7 @@
 
 namespace luxel::view {
 
-/// What pictures of a second scene, and of both, are drawn with.
+/// Resources for pictures of a second scene, and of both.
 struct Pair {
   Painter second;
   gpu::Target shown;   ///< both together, as Painter::shown

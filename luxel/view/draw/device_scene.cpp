@@ -258,7 +258,7 @@ Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceSce
   return {};
 }
 
-/// What lamps see, of undefined content.
+/// Makes the shadow maps of lamps, of undefined content.
 Status put_shadow_maps(gpu::Commands& commands, uint32_t side, DeviceScene& out) {
   const gpu::Device& device = commands.device();
   gpu::PictureParams params;

@@ -13,9 +13,10 @@
 
 namespace luxel::view {
 
-/// What the shaders of surfaces look up, in the order of their bindings: E, the base colour, the
-/// metallic factor, emission, the share of light that is scattered through and its colour, the
-/// second picture of E, and the maps of shadows, which tell what is lit, and then their depth.
+/// Pictures that the shaders of surfaces look up, in the order of their bindings: E, the base
+/// colour, the metallic factor, emission, the share of light that is scattered through and its
+/// colour, the second picture of E, and the maps of shadows, which tell what is lit, and then their
+/// depth.
 inline constexpr uint32_t kLookUps = 9;
 
 /// Triangles of one material in one mesh: a range of the indices.
@@ -24,7 +25,7 @@ struct DrawRange {
   uint32_t material = 0;
 };
 
-/// What changes from picture to picture, as shaders/scene.glsl has it.
+/// Values that change from picture to picture, as shaders/scene.glsl has them.
 struct LightNow {
   Vec3 eye;
   uint32_t lamp_count = 0;
@@ -106,7 +107,7 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
 /// The factor of the light that an instance's surfaces emit, 1 to begin with. Nothing may still
 /// draw the scene.
 void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene);
-/// What the next picture is drawn with. Nothing may still draw the scene when it is changed.
+/// Values for the next picture. Nothing may still draw the scene when they are changed.
 LightNow& light_now(const DeviceScene& scene);
 
 /// Another place of an instance. Nothing may still draw the scene.

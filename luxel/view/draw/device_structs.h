@@ -1,4 +1,4 @@
-// What lies in the buffers of a DeviceScene: the structs of shaders/surface.glsl, in scalar layout.
+// Structs in the buffers of a DeviceScene: those of shaders/surface.glsl, in scalar layout.
 #pragma once
 
 #include <array>

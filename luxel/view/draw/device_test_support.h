@@ -1,4 +1,4 @@
-// What tests that draw share: a device and its shaders.
+// Fixture for tests that draw: a device and its shaders.
 #pragma once
 
 #include <gmock/gmock.h>

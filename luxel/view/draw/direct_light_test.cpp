@@ -18,7 +18,7 @@ using Kind = scene::PunctualLight::Kind;
 
 constexpr int kPictureSide = 96;
 
-/// What a ray through the middle of a pixel finds.
+/// The surface that a ray through the middle of a pixel finds, and its light.
 struct Pixel {
   bool is_surface = false;
   Vec3 position, facet;
@@ -53,8 +53,8 @@ std::vector<Pixel> by_rays(const scene::Scene& scene, const trace::RayTracer& tr
   return out;
 }
 
-/// Whether all around a pixel is one surface, and nowhere the edge of a shadow. Facets may turn by
-/// as much as their normals' cosine says; 1: it is a single triangle.
+/// True where all around a pixel is one surface, and nowhere the edge of a shadow. Facets may turn
+/// by as much as their normals' cosine says; 1: it is a single triangle.
 bool is_within(const std::vector<Pixel>& pixels, int x, int y, int around, float cosine) {
   const Pixel& middle = pixels[size_t(y * kPictureSide + x)];
   for (int v = y - around; v <= y + around; ++v)
@@ -69,7 +69,7 @@ bool is_within(const std::vector<Pixel>& pixels, int x, int y, int around, float
   return true;
 }
 
-/// Whether a pixel and all around it show one triangle.
+/// A pixel and all around it show one triangle.
 bool is_one_surface(const std::vector<Pixel>& pixels, int x, int y) {
   return is_within(pixels, x, y, 1, 1);
 }
@@ -116,7 +116,7 @@ class DirectLightTest : public testing::OnDevice {
   std::optional<DirectLight> direct_;
 };
 
-/// How many pixels were compared, lit and dark.
+/// Numbers of pixels compared, lit and dark.
 struct Compared {
   int lit = 0, dark = 0;
 };

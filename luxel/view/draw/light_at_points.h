@@ -12,7 +12,7 @@ struct LitPoint {
   Vec3 position, normal;
 };
 
-/// What a device works out the light of points with, for one scene.
+/// Resources by which a device works out the light of points, for one scene.
 struct LightAtPoints {
   gpu::Pipeline shader;
   gpu::BindingSets maps;
@@ -24,7 +24,7 @@ struct LightAtPoints {
     return {reinterpret_cast<const Rgb*>(irradiance.mapped), count};
   }
 };
-/// Whether a device takes so many at once.
+/// True: a device takes so many at once.
 bool can_light_points(const gpu::Device& device, size_t points);
 /// There are points, no more than can be lit. Errors: no memory on the device.
 Result<LightAtPoints> make_light_at_points(const gpu::Device& device, const DeviceScene& scene,

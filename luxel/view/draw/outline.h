@@ -15,7 +15,7 @@ struct OutlineShaders {
 /// `shown`: the format of what the line is drawn over.
 Result<OutlineShaders> make_outline_shaders(const gpu::Device& device, VkFormat shown);
 
-/// What outlines of one size of picture are drawn with.
+/// Resources for outlines in pictures of one size.
 struct Outliner {
   gpu::Target mask;  ///< 8 bits: the share of a pixel that what is outlined covers
   gpu::OwnedSampler sampler;

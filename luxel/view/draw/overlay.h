@@ -1,4 +1,4 @@
-// What a bake is made of, drawn on its surfaces: false colours, texels, charts.
+// Draws a bake on its surfaces: its light in false colours, its texels, its charts.
 #pragma once
 
 #include <array>

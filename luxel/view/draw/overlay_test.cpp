@@ -134,7 +134,7 @@ TEST_F(OverlayTest, ScalesAreThoseOfTheBake) {
   EXPECT_LE(apart(pixel_of(picture_of(at, frame, look), 64, 50), image::false_color(0.98)), 4);
 }
 
-/// How often the tone changes along a row of the picture.
+/// Changes of tone along a row of the picture.
 int changes_in_row(const image::Image8& picture, int y) {
   int out = 0;
   for (int x = 1; x < picture.width; ++x)

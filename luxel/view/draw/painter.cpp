@@ -116,7 +116,7 @@ void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canva
   }
 }
 
-/// Whether it shows colours that stand for something, not light.
+/// True: it shows colours that stand for something, not light.
 bool shows_colors(Show show) { return looks_into_bake(show) && show != Show::checker; }
 
 /// The surroundings, or a light grey behind colours that stand for something.
@@ -203,7 +203,7 @@ void draw_surfaces_or_else(const gpu::Device& device, VkCommandBuffer commands,
     draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact, clip, frame);
 }
 
-/// What is exposed as a screen shows it, and what lies over it.
+/// Draws the exposed picture as a screen shows it, and all that lies over it.
 void show_exposed(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                   const Additions& more, display::ToneMap curve, const Frame& frame) {
   const Painter& painter = canvas.painter;

@@ -32,7 +32,7 @@ struct Shaders {
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
 
-/// What pictures of one size are drawn with.
+/// Resources for pictures of one size.
 struct Painter {
   gpu::Target exposed;  ///< halves: exposed radiance, and the share of the pixel that is a surface
   gpu::Target shown;    ///< 8 bits, display values
@@ -44,7 +44,7 @@ struct Painter {
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
                              const DeviceScene& scene, uint32_t width, uint32_t height);
 
-/// What is drawn instead of a scene's surfaces, and after all of them.
+/// Things drawn instead of a scene's surfaces, and after all of them.
 struct Additions {
   std::optional<DeviceQuadratics> instead;
   std::optional<ExactPixels> exact;  ///< of `instead`
@@ -54,7 +54,7 @@ struct Additions {
   std::optional<DeviceInset> inset;            ///< over the picture
 };
 
-/// What a picture is drawn with and of. All of it must live until it is drawn.
+/// The scene of a picture and all that draws it. These must live until it is drawn.
 struct Canvas {
   const Shaders& shaders;
   const Painter& painter;

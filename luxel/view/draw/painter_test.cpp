@@ -1,5 +1,4 @@
-// What a graphics device makes of surfaces whose look is known without it. Skipped without a
-// device.
+// A graphics device draws surfaces whose look is known without it. Skipped without a device.
 #include <gmock/gmock.h>
 
 #include <random>

@@ -40,7 +40,7 @@ struct RoomWithBall {
     balls.probes = {some_probe(rays.eye + normalize(rays.forward) * size)};
     balls.spacing_m = size;
   }
-  /// What the ball faces at a pixel; none beside it, or too near its edge.
+  /// Normal of the ball at a pixel; none beside it, or too near its edge.
   std::optional<Vec3> normal_at(int x, int y) const {
     const trace::Ray ray = trace::CameraRays(frame.camera, kBallPixels, kBallPixels)
                                .through(float(x) + 0.5f, float(y) + 0.5f);

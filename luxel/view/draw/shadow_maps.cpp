@@ -85,7 +85,7 @@ ShadowMap map_along(Vec3 direction, const Box3& bounds, float side) {
   return map_of_square(view, {middle.x, middle.y}, half, seen, side);
 }
 
-/// How far from the eye a box reaches along its view; 0: it lies behind.
+/// Farthest reach of a box from the eye along its view [m]; 0: it lies behind.
 float farthest_m(const trace::CameraRays& eye, const Box3& bounds) {
   float out = 0;
   for (int k = 0; k < 8; ++k) {
@@ -147,7 +147,7 @@ std::vector<ShadowMap> maps_of(const scene::PunctualLight& light, const Box3& bo
   return out;
 }
 
-/// What a lamp's maps take: six cells, or a map that is two cells wide.
+/// Cells that a lamp's maps take: six maps of a cell, or one that is two cells wide.
 size_t cells_of(const scene::PunctualLight& light) { return looks_all_round(light) ? 6 : 4; }
 
 /// A square of cells that are given away, those in squares of two by two first.

@@ -26,8 +26,8 @@ struct Shapes {
   std::vector<ShapeCorner> discs;      ///< one for each: its centre
   float line_width = 1.5f;             ///< [pixels]
   float disc_width = 5;                ///< their diameter [pixels]
-  /// What stands before them hides them. Surfaces on which they lie do not: what is within a
-  /// thousandth of its distance to the eye does not count.
+  /// True: things before the shapes hide them. Surfaces on which the shapes lie do not: a
+  /// thousandth of the distance to the eye does not count.
   bool is_hidden = true;
 
   bool empty() const { return triangles.empty() && lines.empty() && discs.empty(); }
@@ -54,7 +54,7 @@ struct ShapeShaders {
 Result<ShapeShaders> make_shape_shaders(const gpu::Device& device, VkFormat color,
                                         VkSampleCountFlagBits samples);
 
-/// How a picture is taken that shapes are drawn into.
+/// View of the picture that shapes are drawn into.
 struct ShapeView {
   std::array<float, 16> clip_from_world{};  ///< column by column
   bool is_parallel = false;                 ///< depth is linear in the distance

@@ -56,7 +56,7 @@ std::array<int, 3> wall_pixel(const image::Image8& picture, size_t x, size_t y) 
 
 int level(float display) { return int(std::lround(255 * display)); }
 
-/// How many pixels are not black.
+/// Number of pixels that are not black.
 size_t count_seen(const image::Image8& picture) {
   size_t out = 0;
   for (size_t i = 0; i < picture.data.size(); i += 3)

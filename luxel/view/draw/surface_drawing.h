@@ -37,7 +37,7 @@ class SurfaceShaders {
   std::unique_ptr<Made> made_;
 };
 
-/// How surfaces are seen.
+/// View and bindings by which surfaces are drawn.
 struct SurfaceView {
   std::array<float, 16> clip_from_world{};  ///< column by column
   std::span<const VkDescriptorSet> sets{};  ///< of each material, of SurfaceShaders::any()

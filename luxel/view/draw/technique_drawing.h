@@ -25,7 +25,7 @@ struct DeviceCorners {
   std::vector<CornerRange> ranges;
 };
 
-/// What techniques draw, beside a DeviceScene, which has the materials.
+/// Buffers that techniques draw from, beside a DeviceScene, which has the materials.
 struct DeviceTechniques {
   DeviceCorners own;                  ///< the scene's triangles
   std::optional<DeviceCorners> mesh;  ///< of the hemicube solver; none: `own` is drawn, dark
@@ -44,7 +44,7 @@ Status put_mesh(const gpu::Device& device, const SurfaceCorners& mesh,
 /// E of all elements of the mesh [W/m^2]. Nothing may still draw it.
 void put_irradiance(std::span<const Rgb> irradiance, DeviceTechniques& out);
 
-/// How a picture is taken.
+/// View and bindings by which techniques draw.
 struct TechniqueView {
   std::array<float, 16> clip_from_world{};     ///< column by column
   std::span<const VkDescriptorSet> materials;  ///< what the scene's materials look up

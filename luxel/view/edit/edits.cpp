@@ -29,7 +29,7 @@ bool is_lamp(const scene::PunctualLight& light) {
          light.angular_radius_rad >= 0 && light.angular_radius_rad <= kPi / 2;
 }
 
-/// Whether two edits are of one thing, so that the later one says all that the earlier one did.
+/// True where two edits change one thing, so that the later one says all that the earlier one did.
 bool changes_the_same(const Edit& a, const Edit& b) {
   if (a.index() != b.index()) return false;
   if (const auto* moved = std::get_if<InstanceMoved>(&a))

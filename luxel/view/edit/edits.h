@@ -14,10 +14,9 @@
 
 namespace luxel::view {
 
-// What an edit can change. Instances and materials are those of the scene as it was read, by their
-// numbers there; so are lamps, and those that were added have the numbers that follow. Numbers stay
-// whatever is deleted. Each edit says all of what it changes: whether it comes once or twice, the
-// scene is the same.
+// Kinds of edits. Instances, materials and lamps have the numbers that they have in the scene as it
+// was read. Lamps that were added have the numbers that follow. Numbers stay whatever is deleted.
+// Each edit says all of what it changes: done once or twice, it leaves the same scene.
 struct InstanceMoved {
   uint32_t instance = 0;
   Mat34 world_from_object;
@@ -42,7 +41,7 @@ struct MaterialSet {
 };
 using Edit = std::variant<InstanceMoved, LampSet, LampCreated, LampDeleted, MaterialSet>;
 
-/// What was done and what was undone, without end.
+/// Edits done and edits undone, without a limit.
 struct History {
   std::vector<Edit> done, undone;  ///< the last ones are the next to be undone, and done again
   bool is_open = false;            ///< the last of `done` goes on changing: it is a drag
@@ -59,7 +58,7 @@ bool undo(History& history);
 bool redo(History& history);
 
 using EditedLamp = Lamp;
-/// What of a material can be changed.
+/// Properties of a material that can be changed.
 struct MaterialLook {
   Rgb base_color{1, 1, 1}, emission{};
   float metallic = 0;
@@ -86,7 +85,7 @@ void put(const Edit& edit, SceneNow& now);
 /// intensity 0. Takes as long as copying the scene.
 scene::Scene edited(const scene::Scene& as_read, const SceneNow& now);
 
-/// Whether an edit names what there is, and is of numbers that a scene may hold.
+/// True where an edit names things that exist, and holds only numbers that a scene may hold.
 bool can_be_put(const Edit& edit, const SceneNow& now);
 
 /// A scene while it is edited.

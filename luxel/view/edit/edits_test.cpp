@@ -23,7 +23,7 @@ std::shared_ptr<const ReadScene> cornell_read() {
 
 scene::Scene scene_of(const EditDesk& desk) { return edited(desk.read->scene, desk.now); }
 
-/// What differs between the two, but for names.
+/// Differences between two scenes, but for names.
 std::string difference(const scene::Scene& before, const scene::Scene& now) {
   return scene::difference(scene::digests_of(before), scene::digests_of(now));
 }

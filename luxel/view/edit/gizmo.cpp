@@ -22,7 +22,7 @@ Vec3 snapped(Vec3 v, float step) {
   return {snapped(v.x, step), snapped(v.y, step), snapped(v.z, step)};
 }
 
-/// How far along an axis the pointer is [m].
+/// Place of the pointer along an axis, from the gizmo's centre [m].
 float along_axis(const Gizmo& gizmo, Vec3 axis, Vec2 pixel, const Walk& walk) {
   return dot(on_line(ray_through(walk, pixel), gizmo.centre, axis) - gizmo.centre, axis);
 }

@@ -13,8 +13,8 @@ namespace luxel::view {
 enum class Tool : uint8_t { move, turn, scale };
 inline constexpr std::array<const char*, 3> kTools{"move", "turn", "scale"};
 
-/// What of a gizmo can be taken hold of: what goes along an axis, or around it; what goes along two
-/// axes, at a right angle to the third; and the middle, which goes along all.
+/// Parts of a gizmo that can be taken hold of. x, y and z go along an axis, or around it; yz, zx
+/// and xy go along two axes, at a right angle to the third; `all`, the middle, goes along all.
 enum class Grip : uint8_t { x, y, z, yz, zx, xy, all };
 
 /// It is of the same size on the screen wherever it stands.
@@ -27,7 +27,7 @@ struct Gizmo {
 /// The size of a gizmo in a picture, from its centre to the ends of its axes [pixels].
 float gizmo_reach(const Walk& walk);
 
-/// What is within reach of a pixel, the nearest; none where nothing is.
+/// The nearest grip within reach of a pixel; none where there is none.
 std::optional<Grip> grip_at(const Gizmo& gizmo, const Walk& walk, Vec2 pixel);
 /// As it is seen, over the picture. One grip may be lit.
 std::vector<Mark> marks_of(const Gizmo& gizmo, std::optional<Grip> lit, const Walk& walk);
@@ -40,9 +40,9 @@ struct Snap {
 /// a tenth.
 Snap snap_of(const Box3& bounds);
 
-/// What a drag of a grip from a pixel to another does to the world: what was at p is then at the
-/// result of p. Along an axis it goes to the place of the axis that is nearest to what is under the
-/// pointer, in a plane to what is under the pointer itself.
+/// The transform of the world by a drag of a grip from a pixel to another: it takes p to its new
+/// place. A drag along an axis goes to the place of the axis that is nearest to the pointer's ray,
+/// one in a plane to the place where that ray meets the plane.
 Mat34 dragged_by(const Gizmo& gizmo, Grip grip, Vec2 from, Vec2 to, const Snap& snap,
                  const Walk& walk);
 

@@ -1,4 +1,4 @@
-// How gizmos look: what is drawn of them is what can be taken.
+// Shape of gizmos: all that is drawn of them can be taken.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace luxel::view {
 Vec3 towards(const Gizmo& gizmo, const Walk& walk);
 /// The ring about an axis, in small steps [m].
 std::vector<Vec3> ring_of(const Gizmo& gizmo, int axis, const Walk& walk);
-/// Whether a place of a ring is on its far side.
+/// True where a place of a ring is on its far side.
 bool is_behind(const Gizmo& gizmo, Vec3 place, const Walk& walk);
 
 }  // namespace luxel::view

@@ -47,7 +47,7 @@ bool has_moved(const EditDesk& desk, uint32_t instance) {
          desk.read->scene.instances[instance].world_from_object;
 }
 
-/// What is nearer than `nearest` of an instance that has moved.
+/// Sets `nearest` to the hit on an instance that has moved, where that is nearer.
 void try_moved(const EditDesk& desk, uint32_t instance, trace::Ray ray, trace::Hit& nearest) {
   const scene::Scene& scene = desk.read->scene;
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
@@ -63,7 +63,7 @@ void try_moved(const EditDesk& desk, uint32_t instance, trace::Ray ray, trace::H
   }
 }
 
-/// What a ray meets of instances that are where they were.
+/// The first hit of a ray among instances that are where they were.
 trace::Hit unmoved_hit(const EditDesk& desk, const trace::Ray& ray) {
   std::array rays{ray};
   for (int step = 0; step < trace::kMostSurfaces; ++step) {

@@ -1,4 +1,4 @@
-// What of an edited scene the pointer is on.
+// Finds the part of an edited scene that the pointer is on.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace luxel::view {
 
-/// What a ray meets first of the scene as it is now, as trace::visible_hits(): the back faces of
+/// The first hit of a ray in the scene as it is now, as trace::visible_hits(): the back faces of
 /// one-sided materials are invisible. Triangles of instances that have moved are tried one by one:
 /// some milliseconds for a million of them.
 trace::Hit visible_now(const EditDesk& desk, const trace::Ray& ray);

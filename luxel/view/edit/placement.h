@@ -12,7 +12,7 @@ struct Placement {
   Vec3 scale{1, 1, 1};  ///< along the object's axes; x < 0: mirrored
 };
 
-/// How a sheared transform is turned is said by its first axis and the plane of the first two.
+/// The turn of a sheared transform is that of its first axis and of the plane of the first two.
 Placement placement_of(const Mat34& world_from_object, Vec3 middle);
 
 /// The transform with another placement. It stays as it is, bit by bit, where nothing differs, and

@@ -88,7 +88,8 @@ Result<std::vector<std::byte>> gltf_bytes(const SceneToSave& to_save,
       });
 }
 
-/// Whether the file is still what was read: as many of everything, where they were.
+/// True: the file is still the one that was read, with instances where they were, as many
+/// materials, and no more lights.
 bool is_as_read(const scene::Scene& file, const scene::Scene& read) {
   const auto is_there = [](const scene::Instance& a, const scene::Instance& b) {
     return a.world_from_object == b.world_from_object && a.name == b.name && a.mesh == b.mesh;

@@ -22,7 +22,7 @@ struct SceneToSave {
 /// it was read.
 Result<std::filesystem::path> save_scene(const SceneToSave& to_save);
 
-/// What a saved file lacks of an edited sky, for the sentence that tells of it; empty: nothing.
+/// The end of a sentence that says what a saved file lacks of an edited sky; empty: nothing.
 std::string what_sky_lacks(const SceneToSave& to_save);
 
 }  // namespace luxel::view

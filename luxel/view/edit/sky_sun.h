@@ -11,7 +11,7 @@ namespace luxel::view {
 LampSet lamp_set(uint32_t lamp, const Lamp& to, const std::optional<SkyAsked>& asked,
                  const EditDesk& desk);
 
-/// Whether a lamp is as its sky has it, so that `--sky` brings it back.
+/// True while a lamp is as its sky has it, so that `--sky` brings it back.
 bool is_of_sky(uint32_t lamp, const ReadScene& read, const SceneNow& now);
 
 }  // namespace luxel::view

@@ -73,7 +73,7 @@ bool drag(Vec2 pointer, const Walk& walk, EditTools& tools) {
   return tools.may_be_click;
 }
 
-/// What is held is remembered as it is.
+/// Remembers the selected lamp or instance as it is when it is taken hold of.
 void hold(Vec2 pointer, EditTools& tools) {
   tools.pointer_from = pointer;
   if (tools.selected.lamp) tools.lamp_from = selected_lamp(tools);
@@ -231,7 +231,7 @@ struct DoAsked {
   }
 };
 
-/// What a step back has taken away is no longer selected.
+/// Lets go of grips and marks, and deselects a lamp that a step back has taken away.
 void tidy(EditTools& tools) {
   const auto& lamps = tools.desk.now.lamps;
   const auto& lamp = tools.selected.lamp;

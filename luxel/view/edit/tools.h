@@ -14,7 +14,7 @@
 
 namespace luxel::view {
 
-/// What is selected; a lamp, or surfaces and perhaps one of their materials, or nothing.
+/// The selection: a lamp, or surfaces and perhaps one of their materials, or nothing.
 struct EditSelection {
   std::optional<uint32_t> instance{}, material{}, lamp{};
   friend bool operator==(const EditSelection&, const EditSelection&) = default;
@@ -47,9 +47,9 @@ struct EditTools {
 
 EditTools begin_tools(std::shared_ptr<const ReadScene> read);
 
-/// What an event does. True: it is no longer the walk's. A press and release on a surface selects
-/// its instance, and one more its material; on nothing, nothing. Grips and marks of lamps are
-/// dragged; with ctrl in steps.
+/// Acts on an event. True: it is no longer the walk's. A press and release on a surface selects its
+/// instance, and one more its material; beside all surfaces it deselects. Grips and marks of lamps
+/// are dragged; with ctrl in steps.
 bool handle_edits(const Event& event, const Walk& walk, EditTools& tools);
 
 void select(const EditSelection& selection, EditTools& tools);

@@ -7,7 +7,7 @@
 
 namespace luxel::view {
 
-/// What the faces show.
+/// Content of the faces.
 enum class Faces : uint8_t {
   items,  ///< the triangles of the mesh, each in its colour (item_color)
   lit,    ///< the light that arrives from them
@@ -22,7 +22,7 @@ struct CrossPlace {
 };
 CrossPlace place_in_cross(int resolution, size_t pixel);
 
-/// How light is shown.
+/// Settings of a picture of the faces.
 struct FacesLook {
   Faces faces = Faces::items;
   float exposure = 1;
@@ -39,7 +39,7 @@ image::Image8 faces_picture(const LightMesh& mesh, const VertexReport& report,
 image::Image8 report_picture(const LightMesh& mesh, const VertexReport& report,
                              const FacesLook& look, int side, const std::string& unit);
 
-/// What is said of a report: lines of up to 40 letters.
+/// A report in words: lines of up to 40 letters.
 std::vector<std::string> lines_of(const VertexReport& report, const std::string& unit);
 
 }  // namespace luxel::view

@@ -8,7 +8,7 @@
 
 namespace luxel::view {
 
-/// What stands in a mesh at a time.
+/// Light of a mesh while a solver works on it.
 struct GrowingLight {
   std::vector<Rgb> reflectance;  ///< per element
   std::vector<Rgb> irradiance;   ///< E per element as far as it is known [W/m^2]

@@ -1,4 +1,4 @@
-// What a user does in the workshop of hemicube radiosity: events in, technique and element out.
+// The user's part in the workshop of hemicube radiosity: events in, technique and element out.
 #pragma once
 
 #include <optional>
@@ -23,9 +23,9 @@ struct HemicubeDesk {
 /// The largest hemicube that is looked through while a user waits.
 inline constexpr int kMostPixels = 1024;
 
-/// What an event does. True: it is no longer the walk's. A click, which is a press and a release at
-/// the same place, chooses the element nearest to what is seen there, or none. `mesh` is null where
-/// there is none yet.
+/// Acts on an event. True: it is no longer the walk's. A click, which is a press and a release at
+/// the same place, chooses the element nearest to the surface point seen there, or none. `mesh` is
+/// null where there is none yet.
 bool handle_hemicube(const Event& event, const Walk& walk, const LightMesh* mesh,
                      HemicubeDesk& desk);
 

@@ -1,4 +1,4 @@
-// What clicks, keys and plays do in the workshop of hemicube radiosity.
+// Clicks, keys and plays in the workshop of hemicube radiosity.
 #include "luxel/view/hemicube/hemicube_desk.h"
 
 #include <gtest/gtest.h>

@@ -26,7 +26,7 @@ struct LightMesh {
   hemicube::HemicubeParams params;
 };
 
-/// What has come since it was last asked for.
+/// News since the last request for them.
 struct HemicubeNews {
   /// First as it was read, then as it was laid out: charts are cut where walls stand on them.
   std::shared_ptr<const ReadScene> read{};

@@ -1,4 +1,4 @@
-// What the tests of the workshop share: meshes of scenes, and their vertices.
+// Helpers for tests of the workshop: meshes of scenes, and their vertices.
 #pragma once
 
 #include <gtest/gtest.h>

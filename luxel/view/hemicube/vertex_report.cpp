@@ -49,7 +49,8 @@ Status look_around(const LightMesh& mesh, uint32_t element, Progress& progress, 
   return {};
 }
 
-/// What is missing from 1.
+/// Sums the form factors that are missing from 1: of surroundings, of backs, and of what lies
+/// below.
 void count_missing(VertexReport& out) {
   double open = 0, back = 0, below = 0;
   for (size_t i = 0; i < out.items.items.size(); ++i) {

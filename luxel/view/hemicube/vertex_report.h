@@ -1,5 +1,5 @@
-// What one element of the mesh sees: its row of form factors, its hemicube's faces, and how far
-// both are from exact. [Cohen85; Rodriguez06, section 5.6]
+// View of one element of the mesh: its row of form factors, its hemicube's faces, and the errors of
+// both. [Cohen85; Rodriguez06, section 5.6]
 #pragma once
 
 #include <optional>
@@ -62,7 +62,7 @@ Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, 
 /// The form factors of all triangles as the hemicube finds them.
 std::vector<double> factors_of_triangles(const LightMesh& mesh, const hemicube::ItemBuffer& items);
 
-/// How many factors of a row lie between powers of ten: bin k holds those from 10^(k/4 - 7) on.
+/// Numbers of a row's factors by powers of ten: bin k holds those from 10^(k/4 - 7) on.
 inline constexpr size_t kFactorBins = 28;
 std::array<uint32_t, kFactorBins> histogram_of_row(std::span<const float> row);
 

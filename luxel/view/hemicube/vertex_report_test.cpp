@@ -1,4 +1,4 @@
-// What one vertex sees, against factors in closed form.
+// One vertex's view, against factors in closed form.
 #include "luxel/view/hemicube/vertex_report.h"
 
 #include <gtest/gtest.h>

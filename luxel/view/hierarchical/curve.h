@@ -21,7 +21,7 @@ struct Curve {
   double relative_rms = 0;        ///< over the mean of the exact one; 0 in the dark
 };
 
-/// What is computed at once.
+/// Points that are computed at once, and their tolerance.
 struct CurveParams {
   size_t points = 192;
   hierarchical::PointParams point = {.tolerance = 1e-5};

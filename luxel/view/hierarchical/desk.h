@@ -1,4 +1,4 @@
-// What a user chooses while looking into hierarchical radiosity: events in, wishes out. [Hardt96,
+// The user's choices while looking into hierarchical radiosity: events in, wishes out. [Hardt96,
 // appendix B.3.5, B.4]
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace luxel::view {
 
-/// What lies over surfaces, in the order of kOverlays; colours of lines are those of
+/// Overlays of surfaces, in the order of kOverlays; colours of lines are those of
 /// luxel/pipeline/render/overlays.h.
 enum class Over : uint8_t {
   mesh,  ///< edges of elements
@@ -63,7 +63,7 @@ struct NamedNumber {
   const char *name, *words;
   double low, high;
 };
-/// What numbers there are. 0 of the first two and of min-weight: as the solver chooses.
+/// Numbers that can be set. 0 of the first two and of min-weight: as the solver chooses.
 enum class Number : uint8_t {
   eps,
   min_area,
@@ -83,7 +83,7 @@ inline constexpr std::array<NamedNumber, 7> kNumbers{{
     {"exposure", "exposure [stops]", -40, 40},
 }};
 
-/// What is chosen.
+/// The user's choices.
 struct HierarchicalDesk {
   LightKind kind = LightKind::flat;
   std::array<bool, kOverlays.size()> over{};
@@ -101,14 +101,14 @@ struct HierarchicalDesk {
 double number_of(const HierarchicalDesk& desk, Number which);
 void set_number(Number which, double to, HierarchicalDesk& desk);
 
-/// Whether an event is for the desk; it does what it says.
+/// Acts on an event. True: the event is for the desk.
 bool handle_desk(const Event& event, HierarchicalDesk& desk);
 /// Errors: events of a play that the desk does not know, numbers out of their range.
 Status check_desk(const Play& play, const std::string& name);
 
-/// What must be made for it to be seen.
+/// All that must be made for the choices to be seen.
 Wanted wanted_for(const HierarchicalDesk& desk, const std::optional<ExactView>& view);
-/// What of it there is over the surfaces of a piece.
+/// The chosen overlays over the surfaces of a piece.
 Shapes shapes_over(const Piece& piece, const HierarchicalDesk& desk);
 
 }  // namespace luxel::view

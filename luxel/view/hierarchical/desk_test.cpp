@@ -1,4 +1,4 @@
-// What a user chooses while looking into a solver.
+// The user's choices while looking into a solver.
 #include "luxel/view/hierarchical/desk.h"
 
 #include <gmock/gmock.h>

@@ -52,7 +52,7 @@ Status add_exact(const Piece& piece, const SolvedScene& in, size_t count, ExactP
   const h::Solution& s = piece.solution();
   const trace::CameraRays camera(picture.view.camera, picture.view.width, picture.view.height);
   const std::vector<size_t> pixels = ordered_pixels(picture.view, picture.done, count);
-  // What the middles of the pixels meet.
+  // Hits of rays through the middles of the pixels.
   std::vector<trace::Ray> rays;
   for (const size_t pixel : pixels)
     rays.push_back(camera.through(float(pixel % size_t(picture.view.width)) + 0.5f,

@@ -15,7 +15,7 @@ struct ExactView {
   scene::Camera camera;
   int width = 0, height = 0;
 };
-/// Whether two show the same.
+/// True where two views show the same.
 bool is_same(const ExactView& a, const ExactView& b);
 
 /// E at what the middle of each pixel shows, as far as it is known.
@@ -33,7 +33,7 @@ struct ExactPicture {
 
 /// Nothing is known of it yet.
 ExactPicture begin_exact(const Piece& piece, const ExactView& view);
-/// Whether all of it is known.
+/// True once all of it is known.
 bool is_whole(const ExactPicture& picture);
 /// Computes about so many pixels more, those of coarse grids first. Errors: cancelled; what it knew
 /// is then kept.

@@ -1,4 +1,4 @@
-// What of a hierarchical solution lies under the pointer. [Hardt96, appendix B.4.6]
+// Finds the part of a hierarchical solution under the pointer. [Hardt96, appendix B.4.6]
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct LinkNumber {
 std::optional<hierarchical::FacePoint> face_point_seen(const SolutionView& view,
                                                        const trace::CameraRays& camera, Vec2 pixel);
 
-/// What holds a place of a face, from the root of the tree to the leaf: ids of clusters, then of
+/// Ids of all that hold a place of a face, from the root of the tree to the leaf: clusters, then
 /// elements.
 std::vector<uint32_t> path_to(const SolutionView& view, const hierarchical::FacePoint& at);
 
@@ -45,14 +45,14 @@ DVec3 middle_of(const hierarchical::Tree& tree, uint32_t id);
 
 /// Where a line is seen, from pixel to pixel; none where all of it lies behind the eye.
 std::optional<std::array<Vec2, 2>> pixels_of(const trace::CameraRays& camera, DVec3 from, DVec3 to);
-/// How far from a line a pixel is.
+/// Distance of a pixel from a line [pixels].
 float distance_to(const std::array<Vec2, 2>& line, Vec2 pixel);
 
 /// So near to a line the pointer takes hold of it [pixels].
 inline constexpr float kPickReach = 10;
 
-/// How far a line is from what points at it, over how far it may be: up to 1 it is meant. None
-/// where it is not seen.
+/// Distance of a line from the pixel or place that points at it, over the reach: up to 1 it is
+/// meant. None where it is not seen.
 using Nearness = std::function<std::optional<double>(DVec3 from, DVec3 to)>;
 /// From a pixel, over kPickReach.
 Nearness near_pixel(const trace::CameraRays& camera, Vec2 pixel);

@@ -1,4 +1,4 @@
-// What lies under a pointer, where a picture of a known floor says what must.
+// A picture of a known floor says what must lie under a pointer.
 #include "luxel/view/hierarchical/pick.h"
 
 #include "luxel/view/hierarchical/probe_test_support.h"

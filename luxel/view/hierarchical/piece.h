@@ -13,7 +13,8 @@
 
 namespace luxel::view {
 
-/// What surfaces show of a solution, from coarse to exact. The names are those of `luxel render`.
+/// Light that surfaces show of a solution, from coarse to exact. The names are those of `luxel
+/// render`.
 enum class LightKind : uint8_t {
   flat,          ///< a value for each element
   gouraud,       ///< exact light at elements' corners, linear between
@@ -33,7 +34,7 @@ struct Piece {
   std::shared_ptr<const hierarchical::LightMesh> cut;    ///< the light mesh; may be null
   /// All there are, whatever their weight; may be null.
   std::shared_ptr<const std::vector<hierarchical::Discontinuity>> discontinuities;
-  /// How far the interpolants of `cut` are off [W/m^2]; may be null.
+  /// Errors of the interpolants of `cut` [W/m^2]; may be null.
   std::shared_ptr<const std::vector<float>> error;
   /// The strongest between which nothing stands, and something.
   std::shared_ptr<const std::vector<pipeline::StrongLink>> whole_links, partial_links;
@@ -57,7 +58,7 @@ enum class SolverStep : uint8_t {
   last,          ///< represent() without dividing: the solution learns from its light mesh
 };
 
-/// What rounds of represent() by one light have found.
+/// Findings of the rounds of represent() by one light.
 using KnownRounds = hierarchical::Known;
 
 /// A step from a piece, which may be empty for `begin`. The piece has `flat`, and `cut` after

@@ -15,7 +15,7 @@ namespace luxel::view {
 /// E at a place of a face [W/m^2], as a picture shows it.
 using ShownLight = std::function<Rgb(const hierarchical::FacePoint&)>;
 
-/// What a face brings to a point.
+/// Contribution of a face to the light at a point.
 struct SourceShare {
   uint32_t face = 0;
   std::string name;        ///< of instance and material

@@ -7,7 +7,7 @@ namespace {
 
 namespace h = luxel::hierarchical;
 
-/// What a place in space points at is nearer than this part of the scene's diagonal.
+/// A place in space points at things within this part of the scene's diagonal.
 constexpr double kPlaceReach = 0.03;
 
 trace::CameraRays camera_of(const Walk& walk) {

@@ -1,5 +1,5 @@
-// What a user takes hold of in a hierarchical solution: events in, what is selected and known of it
-// out. [Hardt96, appendices B.4.6 to B.4.10]
+// Selection in a hierarchical solution: takes events, and keeps what they select and the facts
+// about it. [Hardt96, appendices B.4.6 to B.4.10]
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ struct Examined {
   uint64_t number = 0;               ///< another one for each solution and way to show it
 };
 
-/// What is selected, by numbers of the solution.
+/// The selected element, link, triangle or discontinuity, by numbers of the solution.
 struct Selection {
   std::optional<hierarchical::FacePoint> at;  ///< where the element or the triangle was picked
   std::vector<uint32_t> path;                 ///< path_to() that place, if an element is selected
@@ -48,7 +48,7 @@ struct Probed {
   std::optional<Graph> graph;
 };
 
-/// What is asked of the solution there is, to be asked again of the next one.
+/// Questions to the present solution, to be asked again of the next one.
 struct Inquiries {
   /// Until it is answered: a discontinuity of the face near this.
   std::optional<std::pair<hierarchical::FacePoint, Nearness>> discontinuity;
@@ -106,7 +106,7 @@ bool follow(const Examined& examined, SelectionDesk& desk);
 
 /// The box around the element, link, triangle or discontinuity; empty: nothing is selected.
 Box3 selected_box(const Examined& examined, const SelectionDesk& desk);
-/// What is drawn of it.
+/// Lines and areas that show the selection and the results of the probes.
 SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk);
 
 }  // namespace luxel::view

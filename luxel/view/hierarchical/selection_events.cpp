@@ -13,7 +13,7 @@ bool was_clicked(const SelectionDesk& desk) {
   return desk.pressed && length(desk.pointer - *desk.pressed) <= kClickReach;
 }
 
-/// What a click with this button asks for.
+/// The tool that a click with this button uses.
 InsideTool tool_of(Button button, const Walk& walk, const SelectionDesk& desk) {
   if (button == Button::left) return desk.tool;
   if (button == Button::middle) return InsideTool::none;

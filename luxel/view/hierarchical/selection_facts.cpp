@@ -66,7 +66,7 @@ std::string words_for(const SolutionView& view, uint32_t id) {
                      name_of_face(view, e.face), e.area_m2);
 }
 
-/// How far an edge is from the line through two points [m].
+/// Distance of an edge from the line through two points [m].
 double gap_to(DVec3 from, DVec3 through, const Generator& edge) {
   const DVec3 u = normalize(through - from);
   const auto aside = [&](DVec3 p) { return (p - from) - u * dot(p - from, u); };
@@ -80,7 +80,7 @@ double gap_to(DVec3 from, DVec3 through, const Generator& edge) {
 struct Wedge {
   DVec3 vertex;
   Generator edge;
-  /// Whether an edge at the vertex lies in that plane, too.
+  /// True: an edge at the vertex lies in that plane, too.
   bool is_double = false;
 };
 std::optional<Wedge> wedge_of(const h::Discontinuity& line, h::PolygonView vertices,

@@ -1,4 +1,4 @@
-// What is selected of a hierarchical solution, in numbers. [Hardt96, appendix B.4.6]
+// Facts about the selected parts of a hierarchical solution, in numbers. [Hardt96, appendix B.4.6]
 #pragma once
 
 #include <string>
@@ -66,7 +66,7 @@ struct Generator {
 struct DiscontinuityFacts {
   hierarchical::Discontinuity line;
   uint32_t receiver = 0;  ///< a face
-  /// What jumps at the line: 0 light itself, 1 its slope, 2 its curvature. [Heckbert92]
+  /// Order of the discontinuity: 0 light itself jumps, 1 its slope, 2 its curvature. [Heckbert92]
   int degree = 2;
   double weight = 0;                                             ///< as weight_of() has it
   hierarchical::Ranking ranking = hierarchical::Ranking::slope;  ///< says the weight's unit

@@ -1,4 +1,4 @@
-// What is selected and what probes have told, as it is drawn over the scene.
+// Lines and areas that show the selection and the results of the probes over the scene.
 #include <algorithm>
 
 #include "luxel/view/hierarchical/selection.h"

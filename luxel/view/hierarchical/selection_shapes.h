@@ -1,4 +1,4 @@
-// What is selected of a hierarchical solution, as lines and areas in space. [Hardt96, appendix B.4]
+// Lines and areas in space that show parts of a hierarchical solution. [Hardt96, appendix B.4]
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct Area {
   float opacity = 0.5f;
 };
 
-/// What is drawn over a picture of the scene.
+/// Shapes drawn over a picture of the scene.
 struct SelectionShapes {
   std::vector<display::Line> lines;
   std::vector<Area> areas;

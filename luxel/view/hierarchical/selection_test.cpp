@@ -1,4 +1,4 @@
-// What is known of elements, links, triangles and discontinuities of a lamp over a floor.
+// Facts about elements, links, triangles and discontinuities of a lamp over a floor.
 #include "luxel/view/hierarchical/selection_facts.h"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ TEST(SelectedElement, KnowsItsTreeItsLightAndItsLinks) {
     area = facts.area_m2;
     if (facts.is_cluster || facts.links == 0) continue;
     has_links = true;
-    // What links bring one by one is what the last gather brought in all.
+    // Light of the links one by one adds up to that of the last gather.
     Rgb sum{};
     for (const h::Link& link : view.solution.links.of[path[level]])
       sum += h::irradiance_of(link, view.solution.exchange(view.tracer), view.solution.light);

@@ -32,7 +32,7 @@ bool is_same_view(const std::optional<ExactView>& a, const std::optional<ExactVi
   return a.has_value() == b.has_value() && (!a || is_same(*a, *b));
 }
 
-/// What the thread does next.
+/// Kinds of work for the thread.
 enum class Task : uint8_t { nothing, step, whole, cut, discontinuities, error, exact };
 
 struct Asked {
@@ -99,7 +99,7 @@ class WorkshopThread : public Workshop {
   Progress::Snapshot snapshot() const override { return worker_.snapshot(); }
 
  private:
-  // What both threads use, under the mutex.
+  // Used by both threads, under the mutex.
 
   bool is_wanted(Task task) const {
     switch (task) {

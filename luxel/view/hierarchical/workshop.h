@@ -14,16 +14,16 @@
 
 namespace luxel::view {
 
-/// What the solver is asked for: a step, or steps until none finds anything to divide.
+/// Requests to the solver: a step, or steps until none finds anything to divide.
 enum class Ask : uint8_t { links, interpolants, converge_links, converge_interpolants, begin };
 
-/// What is to be made of the solution, when the solver has nothing else to do.
+/// Results to be made of the solution when the solver has nothing else to do.
 struct Wanted {
   bool whole = false, cut = false, discontinuities = false, error = false;  ///< see Piece
   std::optional<ExactView> exact = {};  ///< exact light of the pixels of this view
 };
 
-/// What has come since it was last asked for.
+/// News since the last take().
 struct WorkshopNews {
   std::shared_ptr<const ReadScene> read;  ///< once, first
   float exposure = 0;                     ///< once, with the first piece: readable
@@ -52,7 +52,7 @@ class Workshop {
   virtual void want(const Wanted& wanted, const hierarchical::MeshParams& mesh) = 0;
   /// At work while anything is asked for or wanted that is not done, or done and not taken.
   virtual WorkshopState state() const = 0;
-  /// Whether it is at what it was asked for, and not at what is wanted.
+  /// True while anything that was asked for is left to do; wanted results do not count.
   virtual bool is_solving() const = 0;
   virtual Progress::Snapshot snapshot() const = 0;
 };

@@ -19,7 +19,7 @@ pipeline::BakeSettings box_settings() {
   return out;
 }
 
-/// What has come in all when the workshop is at rest, or `until` says so.
+/// All news until the workshop is at rest, or `until` says so.
 struct Seen {
   WorkshopNews last;
   std::vector<uint64_t> numbers;  ///< of pieces

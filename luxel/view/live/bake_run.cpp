@@ -18,7 +18,7 @@ namespace {
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
 /// For the rays of an estimate, so that its picture is there within 0.2 s.
 constexpr double kEstimate_s = 0.1;
-/// What light of each reflection may take before it is made into pictures.
+/// Memory for the light after each reflection, before it is made into pictures.
 constexpr size_t kBouncedBytes = 256 << 20;
 /// So many texels are looked up in a draft within some tenths of a second.
 constexpr size_t kSoonLookedUp = 2'000'000;
@@ -69,7 +69,7 @@ void BakeRun::follow(float exposure, std::shared_ptr<const KnownLight> before, b
 Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& params,
                       const Progress& ends) {
   read_ = std::move(read), camera_ = read_->first.camera;
-  // What is read is seen while the first draft is made; later there is light to be seen.
+  // The scene that was read is shown during its first draft; after an edit, older light is shown.
   LiveNews news;
   news.read = read_;
   if (!kept_exposure_) watcher_.hand(std::exchange(news, {}));
@@ -78,8 +78,8 @@ Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& 
   return {};
 }
 
-/// What is known is as fine as the bake, and what follows from it is there sooner than a draft,
-/// whatever the scene. Null: there is neither.
+/// An estimate from known light, or else a draft. Known light is as fine as the bake, and an
+/// estimate from it is there sooner than a draft, whatever the scene. Null: there is neither.
 Result<std::unique_ptr<Draft>> BakeRun::first_light(const DraftParams& params,
                                                     const Progress& ends) const {
   if (!before_) return make_draft(read_->scene, settings_, params, ends);
@@ -207,7 +207,7 @@ LiveLight BakeRun::draft_elsewhere(const light::TexelScene& in) const {
   return out;
 }
 
-/// What surfaces send each other, by the draft, and direct light of the bake.
+/// Direct light of the bake, and reflected light of the draft.
 std::vector<Rgb> BakeRun::with_reflections_of_draft(const light::TexelScene& in,
                                                     std::span<const Rgb> direct) const {
   std::vector<Rgb> reflected = draft_->irradiance;

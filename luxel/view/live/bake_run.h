@@ -44,15 +44,15 @@ class BakeRun {
   /// bake's direct light.
   void tell_lamps_apart(Progress& progress);
 
-  /// What the newest light is shown at; nothing: there was none.
+  /// Exposure of the newest light; nothing: there was none.
   std::optional<float> exposure() const { return exposure_; }
   /// Light that was handed over and is laid out as the bake is; null: there was none.
   std::shared_ptr<const KnownLight> known() const { return light_; }
-  /// Whether its first light follows from what was known, and is laid out as that is.
+  /// True: its first light follows from known light, and is laid out as that is.
   bool follows() const { return before_ != nullptr; }
-  /// Whether its light was handed over with the layout of its own.
+  /// True: its light was handed over with a layout of its own.
   bool lies_anew() const { return is_laid_out_; }
-  /// Whether known() is made of rays of all texels.
+  /// True: known() is made of rays of all texels.
   bool knows_all() const { return knows_all_; }
 
  private:

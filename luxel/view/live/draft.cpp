@@ -15,8 +15,7 @@ namespace {
 constexpr size_t kMostTriangles = 200'000;
 /// Texels along a side; the second for scenes of many charts.
 constexpr int kDraftSides[] = {96, 512};
-/// How far above a surface the draft's surface is looked for, and as far below, over the scene's
-/// diagonal.
+/// The draft's surface is looked for this far above and below a surface, over the scene's diagonal.
 constexpr float kReach = 1e-4f;
 
 pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of, const DraftParams& params,
@@ -47,7 +46,7 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
   observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
     if (light.is_last) keep(in, light, out);
     has_light = light.is_last;
-    // What comes after the light is not looked at.
+    // Stages after the light are not needed.
     if (light.is_last || watched.cancelled()) own.request_cancel();
   };
   observer.on_bounce = [&](const light::TexelScene&, std::span<const Rgb> e) {

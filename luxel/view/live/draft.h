@@ -24,7 +24,7 @@ struct Draft {
   std::vector<std::vector<Rgb>> bounced;  ///< E after 0, 1, ..., kMostBounces reflections
 };
 
-/// What a draft is made of.
+/// Sample counts of a draft.
 struct DraftParams {
   int samples = 32, direct_samples = 8, supersample = 4;  ///< as BakeSettings has them
 };

@@ -40,7 +40,7 @@ bool is_same_lamp(const scene::PunctualLight& a, const scene::PunctualLight& b) 
          a.angular_radius_rad == b.angular_radius_rad && a.profile == b.profile && a.side == b.side;
 }
 
-/// What an edit changes.
+/// Instances and places that an edit changes.
 struct Changes {
   std::vector<uint8_t> moved;  ///< per instance
   std::vector<Box3> boxes;     ///< where something was or is; none: all that is lit changes
@@ -86,7 +86,7 @@ Changes put_edits_into(const scene::Scene& edited, std::span<const uint32_t> mat
   return out;
 }
 
-/// How far x lies on the way from `begin` to `end`, between 0 and 1.
+/// 0 at `begin`, 1 at `end`, linear between them and constant beyond.
 float part_of_way(float x, float begin, float end) {
   return std::clamp((x - begin) / (end - begin), 0.0f, 1.0f);
 }
@@ -138,7 +138,7 @@ struct Change {
     if (hidden_before || hidden_after || c.factor < 0) return;
     weight += w, factor += w * c.factor, factor2 += w * c.factor * c.factor;
   }
-  /// How much of what is known the estimate takes the place of.
+  /// Share of known light that the estimate replaces.
   float estimated() const {
     if (!is_one || weight_after <= 0) return 0;
     if (weight <= 0 || factor <= 0) return 1;
@@ -236,7 +236,7 @@ std::vector<uint32_t> bodies(const KnownLight& known, std::span<const uint8_t> m
   return out;
 }
 
-/// Whether a texel was within a solid where something has gone away.
+/// True for a texel that was within a solid and may have come out: it lies near an edit.
 bool is_freed(const KnownLight& known, std::span<const Box3> boxes, size_t i) {
   if (known.hidden.empty() ? max_component(known.irradiance[i]) > 0 : !known.hidden[i])
     return false;

@@ -109,7 +109,7 @@ TEST(Estimate, FollowsTheSky) {
   EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.02) << "with the old light: 1";
 }
 
-// What is metal reflects nothing: light is direct.
+// Metal reflects nothing here: all light is direct.
 TEST(Estimate, FollowsMetal) {
   const scene::Scene scene = scene::cornell_box();
   scene::Scene metal = scene;
@@ -179,7 +179,7 @@ TEST(LampLight, IsAllDirectLightWhereThereIsNoOther) {
   EXPECT_EQ(dark->of_lamps, std::vector<Rgb>(dark->irradiance.size()));
 }
 
-// What an estimate has besides is the light of lamps where they have been moved to.
+// Light without lamps is all light but that of the lamps in their new places.
 TEST(Estimate, LeavesOutTheLightOfLamps) {
   const scene::Scene scene = box_with_free_lamp({0.1f, 0.45f, 0.3f}),
                      moved = box_with_free_lamp({0.35f, 0.45f, 0.3f});

@@ -1,4 +1,4 @@
-// How light that has become better known takes the place of what is shown: without a jump.
+// Fades from the light that is shown to better known light, without a jump.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ struct Fade {
   float exposure_before = 1, exposure_newest = 1;
 };
 
-/// How long it takes [s].
+/// Duration of a fade [s].
 inline constexpr double kFade_s = 1;
 
-/// Whether the other picture is not shown, so that light can be put into it.
+/// True: the other picture is not shown, so that light can be put into it.
 bool is_free(const Fade& fade);
 /// Light was put into the picture that is not `newest`: it is, from now on, and fades in.
 Fade faded_to_other(const Fade& fade, float exposure);

@@ -16,13 +16,13 @@ constexpr double kSettled = 5e-4;
 constexpr int kMostSweeps = 32;
 constexpr int kSmoothings = 2;
 
-/// What the light of a texel is made of that a ray has met.
+/// A texel that a ray has met, with its part in the light of the texel that the ray came from.
 struct ReadTexel {
   uint32_t texel = 0;
   Rgb factor{};  ///< of its E, all rays of the element taken together
 };
 
-/// What chosen texels see.
+/// Light that chosen texels see.
 struct SeenLight {
   std::vector<Rgb> direct, area, sky;  ///< E [W/m^2]; `area` is what of `direct` is not of lamps
   std::vector<uint8_t> hidden;         ///< 1: within a solid
@@ -104,7 +104,7 @@ Result<SeenLight> look_from(const KnownLight& known, const SceneState& state,
   return out;
 }
 
-/// What arrives at the chosen texels, if texels have `light_of`: without what is direct.
+/// Light that arrives at the chosen texels, direct light aside, if texels have `light_of`.
 template <class LightOf>
 std::vector<Rgb> gathered(const SeenLight& seen, const LightOf& light_of) {
   std::vector<Rgb> out(seen.end.size());
@@ -141,7 +141,7 @@ void settle(const KnownLight& known, const SpreadTexels& spread,
     std::vector<Rgb> next = gathered(after, [&](uint32_t texel) {
       const uint32_t k = outside[spread.cell_of_texel()[texel]];
       const Rgb light = e.direct_after[k] + e.reflected_after[k];
-      // What is black has been within a solid, or the light is off.
+      // A black texel has been within a solid, or the light is off.
       if (!(max_component(known.irradiance[texel]) > 0)) return light;
       return scaled(known.irradiance[texel], e.direct_before[k] + e.reflected_before[k], light);
     });

@@ -10,7 +10,7 @@
 
 namespace luxel::view {
 
-/// How much work an estimate may be.
+/// Work that an estimate takes, in texels and rays.
 struct EstimateParams {
   size_t texels = 3500;    ///< that stand for all, about
   int samples = 16;        ///< rays of each
@@ -44,8 +44,8 @@ Result<Estimates> light_by_few_rays(const KnownLight& known, const SceneState& b
                                     const SceneState& after, const SpreadTexels& spread,
                                     const EstimateParams& params, const Progress& watched);
 
-/// What is known times what an estimate changes. Larger factors than kMostFactor are those of
-/// noise: then it is what the estimate says.
+/// Known light times the estimated change, `after` over `before`. Larger factors than kMostFactor
+/// are those of noise: then it is `after` itself.
 Rgb scaled(Rgb known, Rgb before, Rgb after);
 inline constexpr float kMostFactor = 3;
 

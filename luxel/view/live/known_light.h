@@ -1,4 +1,4 @@
-// What is known of a bake's light, from which light follows an edit of its scene.
+// Known light of a bake, from which light after an edit of its scene is estimated.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ struct KnownLight {
 Result<std::shared_ptr<KnownLight>> known_light(const light::TexelScene& in,
                                                 const scene::Scene& as_read);
 
-/// Whether sorting all triangles of a scene anew and tracing so many rays in them takes less time
+/// True: sorting all triangles of a scene anew and tracing so many rays in them takes less time
 /// than RayTracer::moved() and as many rays, which then go through two levels.
 bool flat_is_quicker(const scene::Scene& scene, double rays);
 

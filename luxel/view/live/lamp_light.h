@@ -1,4 +1,4 @@
-// What comes straight from lamps, told apart from other light: it can be drawn pixel by pixel.
+// Light straight from lamps, told apart from other light: it can be drawn pixel by pixel.
 #pragma once
 
 #include "luxel/base/progress.h"
@@ -11,10 +11,10 @@ namespace luxel::view {
 /// The lights of a scene without its point, spot and directional ones.
 light::Lights without_lamps(const light::Lights& lights);
 
-/// Whether there is any light of which direct_light() knows where it comes from.
+/// True: there is no light whose origin direct_light() knows.
 bool is_dark(const light::Lights& lights);
 
-/// How finely a bake looks at direct light.
+/// Sampling of direct light in a bake.
 struct LampLightParams {
   int direct_samples = 64;  ///< towards discs of suns
   int supersample = 1;      ///< points per texel

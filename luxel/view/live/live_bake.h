@@ -28,7 +28,7 @@ class LiveBake {
   virtual void look(const scene::Camera& camera, float aspect) = 0;
   virtual LiveState state() const = 0;
   virtual Progress::Snapshot snapshot() const = 0;
-  /// What the bake tells people while it goes on: Progress::notes().
+  /// Messages of the bake while it goes on: Progress::notes().
   virtual std::vector<std::string> notes() const = 0;
   virtual void pause(bool is_paused) = 0;
   /// While it rests it takes no processor: the bake that goes on ends once there is a draft, and of

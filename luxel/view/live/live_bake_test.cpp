@@ -105,7 +105,7 @@ MovedBox with_moved_box(const ReadScene& read) {
   return {desk.now, edited(read.scene, desk.now)};
 }
 
-/// What comes until the bake has read.
+/// Takes news until the bake has read its scene.
 std::shared_ptr<const ReadScene> wait_for_scene(LiveBake& live) {
   for (;;) {
     if (LiveNews news = live.take(); news.read) return news.read;

@@ -7,7 +7,7 @@ void merge(LiveNews newer, LiveNews& news) {
   if (newer.read) news.read = std::move(newer.read);
   if (newer.said) news.said = std::move(newer.said);
   if (newer.probes) news.probes = std::move(newer.probes);
-  // What lies elsewhere, or is of another scene, tells nothing apart.
+  // Light told apart in another layout or scene is of no use.
   if (newer.bounced || is_other) news.bounced = std::move(newer.bounced);
   if (newer.light || is_other || !newer.without_lamps.empty())
     news.without_lamps = std::move(newer.without_lamps);

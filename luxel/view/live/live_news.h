@@ -1,4 +1,4 @@
-// What a bake that is looked at has come to, by the time it is asked.
+// News of a bake that is looked at, collected until somebody asks for them.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace luxel::view {
 
-/// What light is made of.
+/// Kinds of light, by the way it was computed.
 enum class LiveKind : uint8_t {
   draft,                 ///< coarse, see draft.h
   estimate,              ///< after an edit, see estimate.h
@@ -24,7 +24,7 @@ enum class LiveKind : uint8_t {
   bake,                  ///< all of it the bake's
 };
 
-/// How well light is known.
+/// Quality of the light so far.
 struct LiveNumbers {
   LiveKind kind = LiveKind::bake;
   double share = 1;       ///< LightEstimate::share
@@ -45,7 +45,7 @@ struct LiveLight {
   std::vector<image::HalfImage> with_lamps;  ///< then: all of it
 };
 
-/// What has come since it was last asked for.
+/// News since the last take().
 struct LiveNews {
   std::shared_ptr<const ReadScene> read{};  ///< of the file, and after each edit
   /// With the first light: of a draft, and then of the bake itself, which lies elsewhere.

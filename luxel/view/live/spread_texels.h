@@ -14,7 +14,7 @@ namespace luxel::view {
 /// Texels of surfaces in the world.
 struct TexelPlaces {
   std::span<const Vec3> position, normal;  ///< [m]; unit
-  /// What moves by itself: texels of one body stand for no other. One number per texel.
+  /// Body of each texel, by number: bodies move on their own, and texels of one stand for no other.
   std::span<const uint32_t> body;
   float texel_m2 = 0;  ///< what a texel covers of them in the mean
 };
@@ -57,7 +57,7 @@ class SpreadTexels {
   /// The cell of each texel.
   std::span<const uint32_t> cell_of_texel() const { return cell_of_texel_; }
   int level_of(size_t texel) const { return level_[texel]; }
-  /// What a texel's light is made of: shares change evenly from place to place and from normal to
+  /// Shares of cells in a texel's light. They change evenly from place to place and from normal to
   /// normal. Returns how many of `out` there are; weights add up to anything above 0, or there are
   /// none.
   size_t shares_at(size_t texel, std::array<CellShare, kMostShares>& out) const;

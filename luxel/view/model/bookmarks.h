@@ -9,7 +9,7 @@
 
 namespace luxel::view {
 
-/// What of a frame is remembered.
+/// The remembered part of a frame.
 struct Bookmark {
   scene::Camera camera;
   float brightness = 1;  ///< exposure over that of the first frame, which grows with a bake
@@ -18,7 +18,7 @@ struct Bookmark {
 /// Those of the keys 1 to 9.
 using Bookmarks = std::array<std::optional<Bookmark>, 9>;
 
-/// What a key asks for: "ctrl+1" to remember the first bookmark, "alt+1" to go there.
+/// A key for a bookmark: "ctrl+1" remembers the first one, "alt+1" goes there.
 struct BookmarkKey {
   size_t number = 0;  ///< from 0 on
   bool remembers = false;

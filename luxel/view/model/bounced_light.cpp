@@ -22,7 +22,7 @@ void subtract(const image::HalfImage& b, image::Image& a) {
   });
 }
 
-/// Whether both pictures have light at the same texels.
+/// True: both pictures have light at the same texels.
 bool lies_alike(const image::Image& a, const image::Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != b.channels) return false;
   for (size_t i = 3; a.channels == 4 && i < a.data.size(); i += 4)

@@ -22,9 +22,9 @@ struct BouncedLight {
   bool is_draft = false;  ///< coarser than the rest of the light
 };
 
-/// What `light` asks for of `all`, the newest light, which `bounced` tells apart. No less than
-/// nothing: what is subtracted may come of other rays. Errors (bad_setting): more reflections than
-/// are told apart.
+/// The part of `all`, the newest light, that `light` asks for, by the reflections in `bounced`.
+/// Never negative, though subtracted light may come of other rays. Errors (bad_setting): more
+/// reflections than are told apart.
 Result<std::vector<image::Image>> part_of(const LightShown& light, const BouncedLight& bounced,
                                           std::span<const image::Image> all);
 
@@ -37,7 +37,7 @@ image::Image to_floats(const image::HalfImage& from);
 Result<BouncedLight> read_bounced(const std::filesystem::path& folder,
                                   const pipeline::LightmapPages& lightmaps);
 
-/// What of the light is shown, in words.
+/// The part of the light, in words.
 std::string words_of(const LightShown& light);
 
 }  // namespace luxel::view

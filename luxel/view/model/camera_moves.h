@@ -1,4 +1,4 @@
-// How a viewer moves a camera: around a place, aside, nearer, through the air.
+// Moves of a viewer's camera: around a place, aside, nearer, through the air.
 //
 // Angles are in radians and places in the world's metres. A camera's scale counts for nothing
 // (trace::CameraRays); each move returns one whose axes are of unit length.

@@ -103,7 +103,7 @@ TEST(CameraMoves, ApproachKeepsThePlaceUnderThePointer) {
       EXPECT_NEAR(after.y, before.y, 2e-3f);
       const bool is_parallel = camera.orthographic_height_m > 0;
       EXPECT_NEAR(after.z, is_parallel ? before.z : before.z * factor, 1e-4f);
-      // What is beside the place at its depth is 1 / factor as far from it.
+      // A point beside the place, at its depth, is 1 / factor as far from it in the picture.
       const Vec3 beside = kTarget + normalize(column(camera.world_from_camera, 1));
       EXPECT_NEAR(after.y - pixel_of(moved, beside).y,
                   (before.y - pixel_of(camera, beside).y) / factor, 5e-3f);

@@ -1,4 +1,4 @@
-// How the surfaces of a mesh lie in the lightmap: in which pieces, and where they are cut.
+// Layout of a mesh's surfaces in the lightmap: its pieces, and the cuts between them.
 #pragma once
 
 #include <array>

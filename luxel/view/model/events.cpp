@@ -76,7 +76,7 @@ std::optional<std::pair<std::string, json>> only_member(const json& from) {
   return std::pair(from.begin().key(), from.begin().value());
 }
 
-/// What is for a solver that is looked into. May throw json::exception.
+/// An event for a solver that is looked into. May throw json::exception.
 std::optional<Event> solver_event_of(const json& from) {
   if (from.contains("do")) return OwnAsked{from["do"].get<std::string>()};
   if (from.contains("overlay")) {
@@ -97,7 +97,7 @@ std::optional<Event> solver_event_of(const json& from) {
   return own ? std::optional<Event>(OwnShown{kOwnShows[*own]}) : std::nullopt;
 }
 
-/// What changes what is shown of a bake. May throw json::exception.
+/// An event that changes how a bake is shown. May throw json::exception.
 std::optional<Event> look_event_of(const json& from) {
   if (from.contains("show")) {
     const auto show = number_of(from["show"].get<std::string>(), kShows,

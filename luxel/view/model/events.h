@@ -1,4 +1,4 @@
-// What a user does at the window, as data: from the window itself, or from a file that is played.
+// A user's actions at the window, as data: from the window itself, or from a file that is played.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +34,7 @@ struct KeyChanged {
   std::string key;
   bool is_down = false;
 };
-/// What is shown becomes another, by its name in kShows.
+/// Something else is shown, by its name in kShows.
 struct ShowChanged {
   Show show = Show::light_and_colour;
 };
@@ -63,7 +63,7 @@ struct SkyAsked {
   pipeline::SkySetting setting;
   std::string words;
 };
-/// What of a lamp becomes otherwise; the rest stays.
+/// Changes to a lamp; the rest stays.
 struct LampChange {
   std::optional<DVec3> to;        ///< place in the world of the file [m]
   std::optional<Vec3> direction;  ///< in which its light travels; not 0
@@ -88,11 +88,11 @@ struct GlowChanged {
   std::string material;
   Rgb radiance{};
 };
-/// What a solver that is looked into shows of its light, by its own name for it (kOwnShows).
+/// A solver that is looked into shows its light in another way, by its own name for it (kOwnShows).
 struct OwnShown {
   std::string name;
 };
-/// What such a solver lays over surfaces, by its name, on or off.
+/// An overlay of such a solver goes on or off, by its name.
 struct OverlayChanged {
   std::string name;
   bool is_on = true;
@@ -102,7 +102,7 @@ struct SettingChanged {
   std::string name;
   double to = 0;
 };
-/// What such a solver is to do.
+/// A command to such a solver, by its name.
 struct OwnAsked {
   std::string name;
 };
@@ -136,7 +136,7 @@ struct ScaleChanged {
 struct WindowClosed {};
 /// The device is lost from here on, as after a crash of its driver: for tests.
 struct DeviceLost {};
-// What is edited of a scene.
+// Edits of a scene.
 /// The surfaces of this name, or of this number where the name is a number; empty: none.
 struct InstanceSelected {
   std::string instance;
@@ -174,7 +174,7 @@ using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, La
                            ToolUsed, SelectionStepped, GraphChanged, PartChanged, ProbesChanged,
                            OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
 
-/// Whether an event changes lamps or what glows; or something else of a scene.
+/// True for events that change lamps or what glows; edits_scene() for other edits of a scene.
 bool changes_lamps(const Event& event);
 bool edits_scene(const Event& event);
 
@@ -260,7 +260,7 @@ struct TimedEvent {
   Event event;
 };
 
-/// What is played: events in the order of their times, and when it ends.
+/// Events to play, in the order of their times, and the end.
 struct Play {
   std::vector<TimedEvent> events;
   double end_s = 0;

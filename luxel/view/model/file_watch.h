@@ -1,4 +1,4 @@
-// Whether what is shown has become otherwise on disk.
+// Watches the files of what is shown for changes on disk.
 #pragma once
 
 #include <filesystem>
@@ -21,11 +21,11 @@ struct FileWatch {
   std::optional<std::vector<FileState>> seen;  ///< by the last look, where it was another
 };
 
-/// What it is now is known. Of a folder the files of a bake are watched that a window reads.
+/// The files' present state is known. Of a bake's folder, those that a window reads are watched.
 FileWatch watch_file(const std::filesystem::path& subject);
 
-/// To be called now and then. True, once, when the files are others than was known, all are there,
-/// and the last look found the same: nobody is writing them any longer.
+/// To be called now and then. True, once, when the files differ from the known ones, all are there,
+/// and none has changed since the last look: nobody is writing them any longer.
 bool has_changed(FileWatch& watch);
 
 }  // namespace luxel::view

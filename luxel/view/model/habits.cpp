@@ -15,7 +15,7 @@ using nlohmann::json;
 
 bool is_size(float x) { return x >= 0 && std::isfinite(x); }
 
-/// Whether pictures can be drawn from there.
+/// True: pictures can be drawn from this camera.
 bool is_camera(const scene::Camera& camera) {
   const Mat34& m = camera.world_from_camera;
   for (const auto& row : m.row)
@@ -38,7 +38,7 @@ json json_of(const scene::Camera& camera) {
           {"orthographic_height_m", camera.orthographic_height_m}};
 }
 
-/// What cannot be read again is left out.
+/// Leaves out what cannot be read again.
 json json_of(const SubjectHabits& subject) {
   json out{{"path", subject.path}, {"bookmarks", json::object()}};
   if (subject.view && is_camera(subject.view->first) && is_camera(subject.view->last))
@@ -55,7 +55,7 @@ json json_of(const SubjectHabits& subject) {
   return out;
 }
 
-// What follows may throw json::exception. None where something is not what it says.
+// These readers may throw json::exception. None where a value makes no sense.
 
 std::optional<scene::Camera> camera_of(const json& from) {
   scene::Camera out;

@@ -1,4 +1,4 @@
-// What the window remembers until it is opened again: a small file of JSON.
+// Habits of the window, kept until it is opened again: a small file of JSON.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct LastView {
   scene::Camera first, last;
 };
 
-/// What is remembered of one scene, bake or .lxr file.
+/// Views and bookmarks of one scene, bake or .lxr file.
 struct SubjectHabits {
   std::string path;  ///< absolute
   std::optional<LastView> view;
@@ -26,7 +26,7 @@ struct SubjectHabits {
   DVec3 origin{};  ///< scene::Scene::origin that its cameras are relative to
 };
 
-/// How the panel lies. ImGui's numbers stand for its headers.
+/// Layout of the panel. ImGui's numbers stand for its headers.
 struct PanelHabits {
   std::optional<std::array<float, 2>> place;  ///< of its corner [pixels]
   std::vector<uint32_t> open, closed;         ///< headers that were opened or closed

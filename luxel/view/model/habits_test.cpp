@@ -1,4 +1,4 @@
-// What is remembered comes back bit by bit; what is no file of it is refused and left alone.
+// Habits come back bit by bit; a file of anything else is refused and left alone.
 #include "luxel/view/model/habits.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// How bright a picture is, by the number of its pixels.
+// Histogram of a picture's brightness.
 #pragma once
 
 #include <vector>

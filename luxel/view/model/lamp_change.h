@@ -1,4 +1,4 @@
-// What events make of lamps.
+// Changes of lamps by events.
 #pragma once
 
 #include "luxel/view/lamp.h"

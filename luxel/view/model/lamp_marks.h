@@ -11,7 +11,7 @@
 
 namespace luxel::view {
 
-/// What of a lamp can be taken hold of.
+/// The part of a lamp that can be taken hold of.
 struct Handle {
   uint32_t lamp = 0;
   bool turns = false;  ///< a spot's direction; otherwise the lamp itself, or the sun in its sky

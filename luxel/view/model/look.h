@@ -1,4 +1,4 @@
-// What there is to see of a bake besides its light.
+// All that a bake shows besides its light.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct Look {
   std::vector<image::Image8> overlaps;  ///< uv_overlaps()
 };
 
-/// What there is of a scene with these lightmaps: all but its unit and the pictures of the folder.
+/// The look of a scene with these lightmaps, without its unit and the pictures of the folder.
 /// E runs up to a round number that 98 % of the texels stay below; the density by its logarithm,
 /// from the first percentile of the surface to the last. `light_uv`: of each mesh and vertex its
 /// place in the lightmap; empty: uv1 is.
@@ -41,11 +41,11 @@ Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps
 Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& scene,
                        const pipeline::LightmapPages& lightmaps);
 
-/// What is missing to show it, as a sentence on the bake in `folder`, which is empty where it is
-/// being made; none where nothing is.
+/// A sentence on what the bake in `folder` lacks for `show`; none where it lacks nothing. `folder`
+/// is empty while the bake is being made.
 std::optional<std::string> missing_for(Show show, const Look& look, const std::string& folder);
 
-/// What the scale of a frame is: its own, or that of the bake.
+/// The scale of a frame: its own, or else that of the bake.
 ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake);
 
 /// image::false_color() in 256 steps, as 0xbbggrr.

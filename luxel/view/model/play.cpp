@@ -5,7 +5,7 @@
 namespace luxel::view {
 namespace {
 
-/// Whether the next event has come by this frame.
+/// True: the time of the next event has come by this frame.
 bool has_come(const Play& events, const Played& played) {
   constexpr double kRounding_s = 1e-9;
   return played.next < events.events.size() &&
@@ -18,11 +18,11 @@ bool has_come(const Play& events, const Played& played) {
 Step step(const Play& events, bool is_at_work, const TakeEvent& take, Played& played) {
   const bool is_last = played.frame >= std::llround(events.end_s * events.frames_per_s);
   bool has_taken = false;
-  // What is left of the last frame comes with it.
+  // The last frame takes all events that are left.
   while (has_come(events, played) || (is_last && played.next < events.events.size())) {
     const Event& event = events.events[played.next].event;
     if (std::holds_alternative<WaitForBake>(event)) {
-      // What came just before may have begun work since: it is waited for from the next step on.
+      // An event just before may have begun work: the wait begins with the next step.
       if (is_at_work || has_taken) return Step::waits;
     } else {
       take(event), has_taken = true;

@@ -1,4 +1,4 @@
-// How a play goes on, frame by frame.
+// Plays events, frame by frame.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace luxel::view {
 /// Gets each event when its time has come.
 using TakeEvent = std::function<void(const Event&)>;
 
-/// How far a play has come.
+/// Progress of a play.
 struct Played {
   int64_t frame = 0;
   size_t next = 0;  ///< event

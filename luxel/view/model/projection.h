@@ -10,7 +10,7 @@ namespace luxel::view {
 
 /// Where a place lies in the picture, in pixels; none behind the eye.
 std::optional<Vec2> pixel_of(const Walk& walk, Vec3 place);
-/// What a pixel sees; its direction is of unit length.
+/// The ray of sight through a pixel; its direction is of unit length.
 trace::Ray ray_through(const Walk& walk, Vec2 pixel);
 /// The camera's direction, of unit length.
 Vec3 forward_of(const Walk& walk);

@@ -56,7 +56,7 @@ class Members {
 
 constexpr float kAny = -scene::kBrightest;
 
-/// What "lamp" and "new_lamp" say besides; none where something else is said, too.
+/// The changes in "lamp" and "new_lamp" events; none where a member is wrong or not known.
 std::optional<LampChange> lamp_change_of(const json& from) {
   LampChange out;
   Members members(from);

@@ -8,7 +8,7 @@
 
 namespace luxel::view {
 
-/// Whether an event is about the scene, by its keys.
+/// True: the keys are those of an event that changes a scene.
 bool changes_scene(const nlohmann::json& from);
 /// The event; none where it is something else. May throw json::exception.
 std::optional<Event> scene_event_of(const nlohmann::json& from);

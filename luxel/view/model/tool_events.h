@@ -8,7 +8,7 @@
 
 namespace luxel::view {
 
-/// Whether an event is about such tools, by its keys.
+/// True: the keys are those of an event of a tool.
 bool uses_tools(const nlohmann::json& from);
 /// The event; none where it is something else. May throw json::exception.
 std::optional<Event> tool_event_of(const nlohmann::json& from);

@@ -48,14 +48,14 @@ struct ToolUsed {
   InsideTool tool = InsideTool::none;
   std::optional<ToolPlace> at, to;  ///< `to`: the end of a graph
 };
-/// What is selected becomes what holds it, its part, or another link: the next weaker one.
+/// The selection goes up to what holds it, down to its part, or on to the next weaker link.
 enum class SelectionStep : uint8_t { up, down, next };
 inline constexpr std::array<const char*, 3> kSelectionSteps{"up", "down", "next"};
 struct SelectionStepped {
   SelectionStep step = SelectionStep::up;
 };
 
-/// What a graph in space shows: exact light, light as it is shown, the difference.
+/// Curves of a graph in space: exact light, light as it is shown, the difference.
 inline constexpr std::array<const char*, 3> kGraphCurves{"exact", "shown", "difference"};
 /// Graphs in space show some curves, and so high; what is not said stays.
 struct GraphChanged {

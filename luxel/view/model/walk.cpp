@@ -19,7 +19,7 @@ constexpr float kHalfStop = 1.41421356f;
 
 float aspect_of(const Walk& walk) { return float(walk.width) / float(walk.height); }
 
-/// What lies under a pixel, or else where the target's distance ends.
+/// The place under a pixel; where there is none, the point at the target's distance.
 Vec3 place_at(const Walk& walk, Vec2 pixel, const PlaceSeen& place_seen) {
   if (const auto place = place_seen(walk.shown, pixel)) return *place;
   const trace::CameraRays rays(walk.shown.camera, walk.width, walk.height);
@@ -41,7 +41,7 @@ void drag(Vec2 by, Walk& walk) {
                : orbited(camera, walk.target, -parts.x * kTurnPerHeight, parts.y * kTurnPerHeight);
 }
 
-/// Whether the pointer is on the line between two bakes.
+/// True: the pointer is on the line between two bakes.
 bool is_on_line(const Walk& walk) {
   const auto& beside = walk.shown.beside;
   return beside && beside->mode == BesideMode::split &&
@@ -62,7 +62,7 @@ LightShown with_bounces(const LightShown& light, int by) {
   return {0, uint32_t(std::max(most, 0))};
 }
 
-/// What a key does when it goes down; those that fly do it as long as they are down.
+/// Does what a key that goes down asks for. Keys that fly act in pass(), as long as they are down.
 void press(const std::string& key, Walk& walk) {
   if (key == "f") {
     const Box3& box = walk.selected.empty() ? walk.bounds : walk.selected;

@@ -26,10 +26,10 @@ std::optional<scene::SurfacePoint> surface_seen(const scene::Scene& scene,
 PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
                         int height);
 
-/// What a user can ask for besides looking.
+/// Requests of a user besides looking.
 enum class Command : uint8_t { stop_or_go_on, save, save_scene };
 
-/// What is shown, and what the user is about to do.
+/// The frame that is shown, and what the user is about to do.
 struct Walk {
   Frame shown;
   Frame first;      ///< what it began with
@@ -45,7 +45,7 @@ struct Walk {
   std::set<std::string> keys;  ///< that are down
   bool turns = false;          ///< the camera goes round the target
   Bookmarks bookmarks;
-  /// What keys have asked for that is not the walk's to do; whoever does it takes it out.
+  /// Requests by keys that are not the walk's to do; whoever does one takes it out.
   std::vector<Command> asked;
 };
 
@@ -53,13 +53,13 @@ struct Walk {
 Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
                 const PlaceSeen& place_seen);
 
-/// What an event changes at once. Dragging turns the camera about the place that was under the
-/// pointer; with the middle or right button, or with shift, it moves the picture with the pointer.
-/// The wheel goes towards the place under the pointer.
+/// Does at once what an event asks for. Dragging turns the camera about the place that was under
+/// the pointer; with the middle or right button, or with shift, it moves the picture with the
+/// pointer. The wheel goes towards the place under the pointer.
 void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk);
 
-/// What goes on while keys are down: flying, a fifth of the scene's size per second. A walk that
-/// turns comes round once in kTurn_s.
+/// Flies while keys are down, a fifth of the scene's size per second. A walk that turns comes round
+/// once in kTurn_s.
 void pass(double seconds, Walk& walk);
 inline constexpr double kTurn_s = 20;
 

@@ -13,9 +13,9 @@ namespace luxel::view {
 /// FOLDER/relight.lxr. Beside it, FOLDER/relight.json says what it was made of.
 std::filesystem::path lxr_in(const std::filesystem::path& folder);
 
-/// What relight.lxr beside relight.json was made of, if it can be opened instead of being made:
-/// settings.output holds data of this scene by these settings, and is as it was written. None where
-/// anything differs, is not there, or cannot be read.
+/// The data and warnings of settings.output, if it can be opened instead of being made: it holds
+/// this scene by these settings, and is as it was written. None where anything differs, is not
+/// there, or cannot be read.
 std::optional<pipeline::Relightable> kept_lxr(const scene::Scene& scene,
                                               const pipeline::RelightSettings& settings);
 

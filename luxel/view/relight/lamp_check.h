@@ -1,4 +1,4 @@
-// How far the light of the lamps is from the path tracer's, asked in the background.
+// Compares the light of the lamps with the path tracer's, in the background.
 #pragma once
 
 #include <memory>

@@ -30,7 +30,7 @@ LampDesk begin_desk(const Lamps& lamps, const Box3& bounds, DVec3 origin = {});
 /// Where a handle is [m].
 Vec3 place_of(const Handle& handle, const LampDesk& desk);
 
-/// What an event does to lamps. True: it is no longer the walk's. A press of the left button near a
+/// Changes lamps by an event. True: it is no longer the walk's. A press of the left button near a
 /// mark takes the lamp; while it is held it follows the pointer in the plane that faces the camera,
 /// or along one axis. A sun turns around the scene.
 bool handle_lamps(const Event& event, const Walk& walk, LampDesk& desk);

@@ -32,7 +32,7 @@ std::vector<scene::PunctualLight> shining(const Lamps& lamps);
 /// L of each material of the file; 0 of those that are off.
 std::vector<Rgb> glowing(const Lamps& lamps);
 
-/// Whether anything gives light.
+/// True: a lamp, a glow or the background gives light.
 bool has_light(const Lamps& lamps);
 
 /// The emission of a material of the file's scene: as baked, but by as much brighter as its glow is

@@ -12,7 +12,7 @@
 
 namespace luxel::view {
 
-/// What it is made of.
+/// Scene and settings of a file to be made.
 struct LxrToMake {
   std::shared_ptr<const ReadScene> read;  ///< the scene as it was read, with its outside light
   SceneNow now;                           ///< and as it is

@@ -18,15 +18,15 @@ struct OpenedLxr {
   Lamps lamps;  ///< as baked
 };
 
-/// Whether a file is one by its name.
+/// True: the file's name is that of an .lxr file.
 bool is_lxr(const std::filesystem::path& file);
 
 /// The light of the file's lamps is there at once. Errors: those of files; a file without texels to
 /// light or without its scene.
 Result<OpenedLxr> open_lxr(const std::filesystem::path& file);
 
-/// What a file of that name holds, or will. `before`: what was looked at, from where it goes on;
-/// null: from where `luxel render` would look. Errors: as above.
+/// Opens data that a file of that name holds, or will hold. `before`: the scene looked at so far,
+/// whose view stays; null: the view is that of `luxel render`. Errors: as above.
 Result<OpenedLxr> opened_lxr(matrix::RelightData data, const std::filesystem::path& file,
                              const ReadScene* before);
 

@@ -8,13 +8,13 @@
 
 namespace luxel::view {
 
-/// What relights a scene, and the light that it has now.
+/// A relighter of a scene, and the light that the scene has now.
 struct RelitLight {
   matrix::Relighter relighter;
   MapPlaces places;
   /// E but for what comes straight from lamps, and that of glowing materials [W/m^2]; 4 channels.
   image::Image indirect;
-  /// What the last relight() took [ms].
+  /// Times of the last relight() [ms].
   struct Milliseconds {
     double direct = 0, bounces = 0, places = 0, map = 0;
     double total() const { return direct + bounces + places + map; }

@@ -50,7 +50,7 @@ Lamp point_at(Vec3 position) {
   return lamp;
 }
 
-// What is looked up is E of the relighter at each texel, for lamps moved, dimmed, coloured and off.
+// The map holds the relighter's E at each texel, for lamps moved, dimmed, coloured and off.
 TEST(RelitLight, IsTheRelightersAnswerOnAMap) {
   const matrix::RelightData data = box_data();
   auto made = matrix::Relighter::make(data, {});

@@ -19,8 +19,8 @@ struct MapPlaces {
   std::vector<uint32_t> ring_end;     ///< of the gutter: none of a ring is the mean of another
 };
 
-/// What post::dilate makes of a map whose covered texels are the places that some patch lights:
-/// others are hidden, and get their neighbours' light. `target` holds texels.
+/// Places of a map, and pixels around them as post::dilate fills them. Texels that some patch
+/// lights are covered; others are hidden, and get their neighbours' light. `target` holds texels.
 MapPlaces map_places(const matrix::Target& target);
 
 /// Light of places into a map of 4 channels, black at first. Other pixels stay; A does, too.

@@ -10,7 +10,7 @@
 
 namespace luxel::view {
 
-/// What relights a scene on a device, and makes the lightmap of its places there.
+/// Relights a scene on a device, and makes the lightmap of its places there.
 struct RelitOnDevice {
   device::DeviceRelighter relighter;
   std::array<gpu::Pipeline, 4> steps{};  ///< of shaders/relit_map.comp

@@ -5,7 +5,7 @@
 namespace luxel::view {
 namespace {
 
-/// What the eye sees of glowing materials and of the background.
+/// Sets the glow of materials and the background that the eye sees.
 void show_glow(const Lamps& lamps, const OpenedLxr& opened, DeviceScene& scene) {
   const std::vector<scene::Material>& materials = opened.read->scene.materials;
   for (size_t m = 0; m < materials.size(); ++m)
@@ -44,8 +44,8 @@ PatchLight patch_light_of(const gpu::Device& device) {
 
 namespace {
 
-/// What relights the scene, if the device knows the file's codec and has the memory for it. Errors:
-/// the device is lost.
+/// A relighter on the device, if that knows the file's codec and has the memory for it. Errors: the
+/// device is lost.
 Result<std::optional<RelitOnDevice>> relit_on_device(gpu::Commands& commands,
                                                      const OpenedLxr& opened,
                                                      const DeviceScene& scene) {

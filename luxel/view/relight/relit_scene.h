@@ -11,7 +11,7 @@
 
 namespace luxel::view {
 
-/// What draws the lamps of an .lxr file.
+/// State for drawing the lamps of an .lxr file.
 struct LampDrawing {
   DirectLight direct;
   /// The light of all bounces, on the device; nothing: the processor's.
@@ -38,7 +38,7 @@ PatchLight patch_light_of(const gpu::Device& device);
 /// memory for, is relit by maps instead. Errors: no memory on the device.
 Result<RelitScene> lxr_shown(gpu::Commands& commands, PatchLight patches, OpenedLxr& opened);
 
-/// What the light of a picture took [ms].
+/// Times that the light of a picture took [ms].
 struct LightTimes {
   double direct = 0, bounces = 0, places = 0;  ///< of matrix::Relighter
   double map = 0;                              ///< the lightmap, and its way to the device

@@ -61,7 +61,7 @@ Result<matrix::RelightData> with_lamps(const matrix::RelightData& data, const La
   const std::vector<Rgb> is = glowing(now);
   for (size_t i = 0; i < out.size(); ++i) {
     const uint32_t m = out.material[i];
-    // What has not changed keeps its bits.
+    // Patches whose glow has not changed keep their bits.
     if (is[m] != baked.glows[m].radiance)
       out.emission[i] = emission_to_keep(out.emission[i], baked.glows[m].radiance, is[m]);
   }

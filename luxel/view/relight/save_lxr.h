@@ -8,11 +8,11 @@
 
 namespace luxel::view {
 
-/// What an .lxr file holds whose lamps, glows and background are those of `now`; how light goes
-/// from surface to surface stays. Lamps that are off have the intensity 0. The scene in it has the
-/// lamps and glows, too. How far light of the scene's lights is off is not known of others: it is
-/// not stated any longer. `baked`: lamps_of() of the data. `name` is for messages. Errors: the
-/// scene in it cannot be read.
+/// The data of an .lxr file with the lamps, glows and background of `now`; how light goes from
+/// surface to surface stays. Lamps that are off have the intensity 0. The scene in it has the lamps
+/// and glows, too. The file's error of light is known for the baked lights only: it is not stated
+/// any longer. `baked`: lamps_of() of the data. `name` is for messages. Errors: the scene in it
+/// cannot be read.
 Result<matrix::RelightData> with_lamps(const matrix::RelightData& data, const Lamps& baked,
                                        const Lamps& now, const std::string& name);
 

@@ -13,7 +13,7 @@ std::vector<scene::PunctualLight> shining(const SceneNow& now) {
 
 namespace {
 
-/// What has moved may stand beyond all that stood there when the scene was put on the device.
+/// Moved instances may stand beyond the bounds that the scene had when it was put on the device.
 void widen_bounds(const SceneNow& now, const std::vector<Mat34>& before, ShownScene& shown) {
   const scene::Scene& scene = shown.drawn();
   for (size_t i = 0; i < scene.instances.size(); ++i) {

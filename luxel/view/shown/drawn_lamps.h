@@ -10,7 +10,7 @@
 
 namespace luxel::view {
 
-/// What they are drawn with, of one scene on a device.
+/// State for drawing the lamps of one scene on a device.
 struct DrawnLamps {
   std::optional<DirectLight> direct;     ///< once it is needed
   std::vector<Mat34> world_from_object;  ///< of each instance, where maps of shadows have it

@@ -1,5 +1,4 @@
-// What is shown in the frame after an edit, before any light of it is known. Skipped without a
-// device.
+// The frame after an edit, before any light of it is known. Skipped without a device.
 #include "luxel/view/shown/drawn_lamps.h"
 
 #include "luxel/base/file.h"

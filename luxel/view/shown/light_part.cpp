@@ -43,7 +43,7 @@ Status show_part(const LightShown& light, gpu::Commands& commands, ShownScene& s
   LUXEL_TRY(const std::vector<image::Image> pages, pages_shown(light, shown));
   std::vector<image::HalfImage> halves;
   for (const image::Image& page : pages) halves.push_back(image::to_half(page));
-  // What fades in does so no longer.
+  // A fade that is under way ends.
   const uint32_t other = 1 - shown.fade.newest;
   LUXEL_TRY_STATUS(put_light(commands, halves, other, shown.device));
   // Where lamps are left out nothing is told apart: ShownScene::bounced.

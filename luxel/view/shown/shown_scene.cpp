@@ -21,7 +21,7 @@ Result<DeviceScene> with_light(gpu::Commands& commands, const LitScene& lit,
                        params);
 }
 
-/// What light is by now, as a bake's files have it.
+/// The light so far, as a bake's files have it.
 pipeline::LightmapPages pages_of(const LiveLight& light, const LitScene& lit) {
   pipeline::LightmapPages out;
   out.of_material = lit.page_of_material;
@@ -60,7 +60,7 @@ Status put_other_sky(const scene::Environment& map, gpu::Commands& commands, Sho
   return is_other ? set_surroundings(commands, map, shown.device) : Status();
 }
 
-/// What tells light apart, or the probes, has come.
+/// Takes bounces, light without lamps and probes that have come.
 void take_more(LiveNews& news, ShownScene& shown) {
   if (news.bounced || news.lit || news.read) shown.bounced = std::move(news.bounced);
   if (news.probes || news.read) shown.probes = std::move(news.probes);

@@ -34,13 +34,13 @@ struct ShownScene {
   std::shared_ptr<const BouncedLight> bounced;  ///< of it; null: not told apart, or not yet read
   std::shared_ptr<const ProbeBalls> probes;     ///< null: there are none, or not yet read
 
-  /// What is looked into: the light of a bake that is there; of one that is made, its first.
+  /// Lightmaps that are looked into: those of a finished bake, or the first of one being made.
   pipeline::LightmapPages lightmaps;
   std::optional<LitScene> lit;   ///< of a bake that is made: what `device` draws; else read->scene
   std::filesystem::path folder;  ///< of a bake that is there
   bool has_layers = false;       ///< read_layers() finds some there
 
-  /// What `device` draws, and where its vertices lie in the lightmap; empty: uv1.
+  /// The scene that `device` draws, and places of its vertices in the lightmap; empty: uv1.
   const scene::Scene& drawn() const { return lit ? lit->scene : read->scene; }
   std::span<const std::vector<Vec2>> light_uv() const {
     return lit ? std::span<const std::vector<Vec2>>(lit->light_uv)
@@ -48,8 +48,7 @@ struct ShownScene {
   }
 };
 
-/// What of it can be looked into, whose light has come. Errors: those of look_into(); it has no
-/// lightmap.
+/// The look of a scene whose light has come. Errors: those of look_into(); it has no lightmap.
 Result<Look> look_of(const ShownScene& shown);
 
 /// A scene in which nothing can be seen, for a window that opens before the file is read.
@@ -79,10 +78,10 @@ Status leave_out_lamps(gpu::Commands& commands, ShownScene& shown);
 /// After an edit: shows light without that of lamps, if they are drawn, or all light, if it is
 /// looked into. Nothing may still draw the scene. Errors: no memory on the device.
 Status draw_lamps_or_not(bool are_drawn, gpu::Commands& commands, ShownScene& shown);
-/// How much of what comes straight from lamps is missing in what is shown.
+/// Share of the lamps' direct light that is missing in what is shown.
 float lamp_share(const ShownScene& shown);
 
-/// Whether all light that has come is shown.
+/// True: all light that has come is shown.
 bool is_settled(const ShownScene& shown);
 
 }  // namespace luxel::view

@@ -71,7 +71,7 @@ void fill(BlockMap& m, const atlas::TexelMap& map, const TracedHits& hits, const
   });
 }
 
-/// What arrives of a block's layers, in lanes as those of the map.
+/// Light that arrives from a block's layers, in lanes as those of the map.
 struct Lanes {
   Float8 low{}, high{};
 };

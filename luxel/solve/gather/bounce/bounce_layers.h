@@ -25,10 +25,10 @@ struct LayeredLight {
   std::span<const Rgb> whole;  ///< E per element, of bounce() over the same hits
 };
 
-/// What each layer takes per element: direct light, LayeredLight::source, the solution and
+/// Bytes of each layer per element: direct light, LayeredLight::source, the solution and
 /// LayersBounced::irradiance.
 inline constexpr uint64_t kLayerBytesPerElement = 4 * sizeof(Rgb);
-/// What a sweep's map of five layers takes per texel of the square, with coverage.
+/// Bytes of a sweep's map of five layers per texel of the square, with coverage.
 inline constexpr uint64_t kLayerMapBytesPerTexel = (5 * 3 + 1) * sizeof(float);
 
 struct LayerBounceParams {

@@ -97,7 +97,7 @@ double Bouncing::relative(double change2) const {
   return mean > 0 ? std::sqrt(change2 / (3 * double(hits.size()))) / mean : 0.0;
 }
 
-/// What sweep(1) does to irradiance where params.first_change is known; nothing to variances.
+/// Does sweep(1) to irradiance, by params.first_change where that is known; there variances stay.
 Result<double> Bouncing::first_sweep(const BounceParams& params) {
   fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
   Sweep sweep{.direct = direct,

@@ -33,7 +33,7 @@ struct BounceParams {
   uint64_t spare_bytes = UINT64_MAX;
 };
 
-/// What that copy takes of elements with so many samples each, whose hits take `hit_bytes`.
+/// Bytes of that copy for elements with so many samples each, whose hits take `hit_bytes`.
 double copy_bytes(double hit_bytes, int samples);
 
 struct Bounced {

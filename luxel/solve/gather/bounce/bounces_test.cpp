@@ -1,4 +1,4 @@
-// How bounces get to their fixed point changes nothing about where that is.
+// Bounces end at the same fixed point, whichever way they take to it.
 #include "luxel/solve/gather/bounce/bounces.h"
 
 #include <gtest/gtest.h>
@@ -137,7 +137,7 @@ TEST(Bounces, EndWhereTheyDoWithoutAFirstChange) {
   for (size_t i = 0; i < n; ++i) half[i] = i % 2;
   std::vector<Rgb> wrong = change;
   for (Rgb& c : wrong) c = c * -3.0f;
-  std::vector<Rgb> known = change;  // what is unknown is not looked at
+  std::vector<Rgb> known = change;  // unknown changes are not looked at
   for (size_t i = 0; i < n; ++i)
     if (half[i]) known[i] = {1e3f, 1e3f, 1e3f};
   const Bounced from_start = t.bounced({.start = start});

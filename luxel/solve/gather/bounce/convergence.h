@@ -39,7 +39,7 @@ struct ReflectanceRange {
 };
 ReflectanceRange reflectance_range(const transport::Elements& elements);
 
-/// What changes are relative to.
+/// The mean that changes are relative to.
 double mean_luminance(std::span<const Rgb> values);
 
 /// The sum of all changes still to come when each is q times the one before: change q / (1 - q).

@@ -1,4 +1,4 @@
-// What every texel of the map sends, as bounces look it up at the ends of rays.
+// The radiosity of every texel of the map, as bounces look it up at the ends of rays.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How sure each texel's light is, and which texels need more rays.
+// The errors of the texels' light, and the texels that need more rays.
 #pragma once
 
 #include <cstdint>
@@ -47,9 +47,9 @@ inline float error_of_part(float max_error) { return max_error * (0.70710678f / 
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
                                    std::span<const uint16_t> samples);
 
-/// How many samples each round will add, until error_p95 of `all` errors is below max_error, if
-/// those of the gathered light, which are part of them, fall like n^-kDecay, and lights are looked
-/// at until theirs are small enough.
+/// Samples that each round will add, until error_p95 of `all` errors is below max_error. Assumes
+/// that errors of the gathered light, which are part of `all`, fall like n^-kDecay, and that lights
+/// are looked at until their errors are small enough.
 std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
                                      float max_error, int max_samples,
                                      std::span<const uint16_t> samples);
@@ -65,7 +65,7 @@ void keep_affordable(std::span<const float> errors, uint64_t affordable,
 /// Per element, 1 where its error is larger than max_error.
 std::vector<uint8_t> elements_above(std::span<const float> errors, float max_error);
 
-/// Whether the direct light of an element can be looked at one level finer.
+/// True: the direct light of an element can be looked at one level finer.
 bool can_be_finer(const light::DirectLevels& levels, size_t element);
 
 /// Elements whose direct light is that of their own sample, and those that have a mean over points.

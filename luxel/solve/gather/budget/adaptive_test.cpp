@@ -82,8 +82,8 @@ TEST(NextSamples, DoubleOrQuadrupleWhereTheErrorIsTooLarge) {
   EXPECT_EQ(next_samples(errors, 0.02f, 1024, samples), (std::vector<uint16_t>{32, 64, 128, 1024}));
 }
 
-// What all stay below that err alike is 1.96 times their standard error; where half of them do not
-// err, as many of the others may err by more as is a tenth of them: 1.645 times.
+// Where all err alike, 95 of 100 err by less than 1.96 standard errors. Where half do not err, a
+// tenth of the others may err by more: 1.645 standard errors.
 TEST(ErrorP95, IsThatOfNormalErrors) {
   std::vector<float> s(1000, 0.02f);
   EXPECT_NEAR(error_p95(s), 1.95996 * 0.02, 1e-5);
@@ -274,10 +274,10 @@ class SlowAdaptive : public testing::Test {
   }
 };
 
-// What is claimed: 95 of 100 texels err by less than `max_error` of their light. Their true errors
-// stay below that in the mean over texels, and within twice the estimate at 9 texels of 10 and more
-// (19 of 20 for a normal error that is known exactly; the estimate is one from few squares, but
-// rather too large than too small, because halves are less well spread than the whole).
+// The claim: 95 of 100 texels err by less than `max_error` of their light. Their true errors stay
+// below that in the mean over texels, and within twice the estimate at 9 texels of 10 and more. A
+// normal error that is known exactly would do so at 19 of 20. The estimate comes from few squares,
+// but is rather too large than too small, because halves are less well spread than the whole.
 TEST_F(SlowAdaptive, TheErrorIsWhatWasAskedFor) {
   for (const float max_error : {0.05f, 0.02f}) {
     const Gather light = solve(

@@ -1,4 +1,4 @@
-// What 95 of 100 elements err by less than.
+// The error that 95 of 100 elements stay below.
 #pragma once
 
 #include <cstddef>

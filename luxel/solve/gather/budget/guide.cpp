@@ -64,7 +64,7 @@ Groups groups_of(const light::TexelScene& in, const TracedHits& hits, std::span<
   return without_small(std::move(out));
 }
 
-/// What rays meet, and buffers.
+/// The scene that rays meet, and the light that its texels send.
 struct GuideScene {
   const light::TexelScene& in;
   const transport::OwnSides& sides;

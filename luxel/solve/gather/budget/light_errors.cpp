@@ -12,7 +12,7 @@
 namespace luxel::gather {
 namespace {
 
-/// What texels cost all gathered light. Errors: the file of hits cannot be read, cancelled.
+/// The error that texels add to gathered light. Errors: the file of hits cannot be read, cancelled.
 Result<TexelError> error_of_texels(const light::TexelScene& scene, const LightToJudge& light,
                                    Progress& progress) {
   const std::vector<Rgb>& e = light.bounced.irradiance;

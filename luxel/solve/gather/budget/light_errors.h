@@ -1,5 +1,4 @@
-// How far the light of all elements may be off: by noise, and since texels are as large as they
-// are.
+// Errors of the light of all elements: by noise, and by the size of texels.
 #pragma once
 
 #include <vector>
@@ -36,7 +35,7 @@ struct LightErrors {
   ExpectedSquares expected;
 };
 
-/// What light_errors() takes, and for the most part leaves.
+/// Memory that light_errors() takes per element [bytes]. Most of it stays in the result.
 inline constexpr uint64_t kJudgedBytesPerElement =
     bytes_per_entry(&LightErrors::noise_variance, &LightErrors::variance, &LightErrors::direct,
                     &LightErrors::gathered, &LightErrors::all);

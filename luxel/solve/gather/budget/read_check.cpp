@@ -45,7 +45,7 @@ struct TexelRays {
   const ReadCheckParams& params;
 
   trace::Ray ray(size_t k, size_t count) const;
-  /// Whether it reads the map where it ends, as is.
+  /// True: a ray that ends at this hit reads the map there, as is.
   bool reads(const trace::Hit& hit) const;
 };
 

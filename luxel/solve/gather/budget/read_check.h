@@ -1,4 +1,4 @@
-// Whether the light that rays read in the map is that of the places they meet.
+// Checks the light that rays read in the map against that of the places they meet.
 //
 // Between texels light is bilinear, and a texel holds that of one place or its mean. Where light
 // varies within a texel, as beside a lamp, rays read too much or too little, and they do so in
@@ -28,12 +28,12 @@ struct ReadCheckParams {
   std::filesystem::path scratch_folder = ".";
 };
 
-/// How many rays a bake of so many samples in all spares for it: few beside its own; 0: it is not
-/// worth it. Where an error is asked for there are more, for noise will be small beside what texels
-/// cost; likewise where elements of these reflectances make it tenfold, 1 / (1 - rho) times what
-/// one reflection costs.
+/// Rays that a bake of so many samples in all spares for the check: few beside its own; 0: the
+/// check is not worth it. Where an error is asked for there are more, for noise will be small
+/// beside the error of texels. There are more, too, where bounces between elements of these
+/// reflectances make that error tenfold: 1 / (1 - rho) times that of one reflection.
 uint64_t check_rays(uint64_t samples, bool asks_for_error, std::span<const Rgb> reflectance);
-/// What so many of them take of memory.
+/// Memory of so many of them [bytes].
 uint64_t check_bytes(uint64_t rays);
 
 /// Places that rays of texels meet, evenly over the rays of all texels that are not hidden.

@@ -1,4 +1,4 @@
-// What texels cost: what rays read in the map, held against the places that they meet.
+// The error of texels: light that rays read in the map, held against the places that they meet.
 #include "luxel/solve/gather/budget/read_check.h"
 
 #include <gtest/gtest.h>

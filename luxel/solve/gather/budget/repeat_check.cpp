@@ -75,7 +75,7 @@ void follow_same_guide(const TracedHits& of_light, std::span<const uint32_t> ele
     if (is_guided(of_light, elements[k])) begin_guided(hits, k, of_light.guided[elements[k]]);
 }
 
-/// What elements are lit by.
+/// Elements that are lit once more, and the scene and light for it.
 struct Repeated {
   const light::TexelScene& of_chosen;
   const transport::OwnSides& sides;

@@ -1,4 +1,4 @@
-// How much noise there is, by lighting some elements once more with other random numbers.
+// Measures noise: lights some elements once more with other random numbers.
 //
 // Variances that rays tell of themselves are those of fewer, or of independent rays, and stratified
 // rays do better than that by a factor that differs from scene to scene. Two results of as many
@@ -38,7 +38,7 @@ struct LightToRepeat {
   std::span<const float> noise_variance;  ///< what is believed of its luminance's variance
 };
 
-/// What is true of noise.
+/// Noise as noise_by_repeating() measures it.
 struct TrueNoise {
   double over_believed = 1;    ///< the sum of variances over that of noise_variance
   double share_of_direct = 0;  ///< what direct light has of it

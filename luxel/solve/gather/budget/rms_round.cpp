@@ -39,7 +39,7 @@ struct ElementSteps {
   std::span<const RmsStep> of_rays() const { return {more.data(), count}; }
 };
 
-/// What an element may have.
+/// One choice for an element: so many samples, with the guide at a level.
 struct Choice {
   double left = 0, cost = 0;  ///< of the variance, and rays that are traced for it
   uint16_t samples = 0;

@@ -10,7 +10,7 @@
 
 namespace luxel::gather {
 
-/// What is known of the noise of each element, and how it was sampled.
+/// The known noise of each element, and how it was sampled.
 struct NoiseLeft {
   std::span<const float> gathered, direct;  ///< variances [(W/m^2)^2]; 0 where nobody asks for less
   std::span<const uint16_t> samples;        ///< indirect rays
@@ -22,8 +22,8 @@ struct NoiseLeft {
 /// sorted nor kept, while an indirect ray's hit is read in every sweep.
 inline constexpr double kShadowRay = 0.5;
 
-/// What light of one element costs, in indirect rays. Rays are counted and not timed, so that the
-/// same seed gives the same bits on any machine.
+/// Costs of one element's light, in indirect rays. Rays are counted and not timed, so that the same
+/// seed gives the same bits on any machine.
 struct RayCosts {
   double sample = 1;                      ///< one more indirect ray, with those that follow it
   double at_sample = 64, at_points = 64;  ///< direct light, as fine as it is at first
@@ -32,7 +32,7 @@ struct RayCosts {
 RayCosts ray_costs(double rays_per_sample, double shadow_rays_at_sample,
                    double shadow_rays_at_points);
 
-/// What the next round does.
+/// The work of the next round, per element.
 struct RoundPlan {
   std::vector<uint16_t> samples;  ///< as many as each element is to have
   std::vector<uint8_t> finer;     ///< 1: its direct light is looked at one level finer

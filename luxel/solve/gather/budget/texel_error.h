@@ -1,4 +1,4 @@
-// What it costs that rays pick light up from texels.
+// The error of light that rays pick up from texels.
 #pragma once
 
 #include <span>
@@ -37,9 +37,9 @@ struct TexelError {
   double apart = 0;                            ///< the root of ReadError::square_apart
   std::vector<float> relative_square_apart{};  ///< ReadError
 };
-/// What is known before is normal with error_by_neighbours(), which holds in most scenes and is
-/// twice the truth in the middle of them. A measurement replaces it as far as it is the surer one:
-/// of two normal densities' product, the root of the mean square.
+/// Before a measurement, the error is normal with error_by_neighbours(), which holds in most scenes
+/// and is twice the truth in the middle of them. A measurement replaces it as far as it is the
+/// surer one: the result is the root mean square of the product of both normal densities.
 TexelError texel_error(const ByNeighbours& by_neighbours, ReadError measured);
 
 }  // namespace luxel::gather

@@ -125,8 +125,8 @@ struct TriedLight {
   }
 };
 
-/// What a hit on element i sends on of the light there. That on its other side is taken to be the
-/// same.
+/// The part of element i's light that a hit on it sends on. Light on its other side is taken to be
+/// equal.
 Rgb sent_of(const transport::Elements& elements, uint32_t i, const StoredHit& hit) {
   const Rgb tau = elements.transmittance.empty() ? Rgb{} : elements.transmittance[i];
   const Rgb part = elements.reflectance[i] + tau;
@@ -165,7 +165,7 @@ Result<TriedLight> tried_light(const atlas::TexelMap& map, const transport::Elem
   return out;
 }
 
-/// How many sweeps bring the light to come below `goal`, and the ratio of the last two changes.
+/// Sweeps until the light to come is below `goal`, and the ratio of the last two changes.
 struct FirstSweeps {
   double count = 0, ratio = 0;
 };

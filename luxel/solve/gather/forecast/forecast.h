@@ -1,4 +1,4 @@
-// What gathering will take, from a trial of a few texels.
+// Forecasts gathering, from a trial of a few texels.
 #pragma once
 
 #include "luxel/light/texel_scene.h"
@@ -6,7 +6,7 @@
 
 namespace luxel::gather {
 
-/// What gather() takes with the parameters' samples, without rounds.
+/// Time, rays and stored hits of gather() with the parameters' samples, without rounds.
 struct Forecast {
   double direct_s = 0, supersample_s = 0, trace_s = 0, bounces_s = 0;
   double rays = 0;       ///< shadow rays and those of near paths included

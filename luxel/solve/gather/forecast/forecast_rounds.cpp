@@ -178,7 +178,7 @@ double samples_of(const RoundsTrial& trial) {
   return sum;
 }
 
-/// What a round adds to the texels that are tried; nothing where their light is known.
+/// The next round for the texels that are tried. It adds nothing where their light is known.
 RoundPlan next_round_of(const RoundsTrial& trial, const ForecastErrors& errors) {
   const GatherParams& params = trial.params;
   const std::vector<uint16_t>& samples = trial.hits.samples;
@@ -243,7 +243,7 @@ Result<RoundsForecast> forecast_rounds(const light::TexelScene& in, const Gather
   const double bytes = double(trial.hits.bytes_in_memory() + trial.hits.bytes_in_file());
   out.hit_bytes = trial.scale * (bytes - before);
   forget_coarse_light(trial);
-  // What the bounces look at: each round's hits, and in the end those of all.
+  // Bounces look at each round's hits, and in the end at those of all rounds.
   std::vector<uint32_t> all(n);
   std::iota(all.begin(), all.end(), 0u);
   LUXEL_TRY(const double fine,

@@ -1,11 +1,11 @@
-// What rounds to an error will take, from those of some texels.
+// Forecasts rounds to an error, from the rounds of some texels.
 #pragma once
 
 #include "luxel/solve/gather/forecast/forecast.h"
 
 namespace luxel::gather {
 
-/// What gather() takes with the parameters' max_error after its first round.
+/// Time, rays and stored hits of gather() with the parameters' max_error, after its first round.
 struct RoundsForecast {
   double trace_s = 0;    ///< rays, and shadow rays
   double bounces_s = 0;  ///< of each round, and the last ones

@@ -57,7 +57,7 @@ float left_with(const GuidedGroup& group, std::span<const float, kCells> deviati
 GuidedGroup guided_group(std::span<const float, kCells> deviations) {
   GuidedGroup out;
   const float most = *std::ranges::max_element(deviations);
-  // What is 2^-20 of the largest has no more than one ray at any level.
+  // A cell with 2^-20 of the largest deviation has no more than one ray at any level.
   const double least = std::max(double(most) * 1e-6, 1e-30);
   for (size_t c = 0; c < kCells; ++c)
     out.doublings[c] = float(std::log2(std::max(double(deviations[c]), least)) * (2 / (1 + kFall)));

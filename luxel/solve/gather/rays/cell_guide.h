@@ -21,7 +21,7 @@ namespace luxel::gather {
 /// Levels of a guide: level k from 1 on has about 64 times 2^(k / 2) rays for an element.
 inline constexpr int kGuideLevels = 10;
 
-/// What is known of the directions of neighbours.
+/// The guide of a group of neighbours: rays of each cell of directions, level by level.
 struct GuidedGroup {
   std::array<float, kCells> doublings;  ///< of each cell, before shifts and rounding
   struct Level {

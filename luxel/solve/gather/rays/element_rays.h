@@ -20,7 +20,7 @@ struct Samples {
   uint32_t count() const { return end - first; }
   /// Those of a cell with 2^doublings as many.
   Samples doubled(uint32_t doublings) const { return {first << doublings, end << doublings}; }
-  /// Whether a sample belongs to the second half of all up to `end`.
+  /// A sample belongs to the second half of all up to `end`.
   bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
 };
 
@@ -28,8 +28,8 @@ struct Samples {
 inline constexpr int kCellsPerAxis = 8;
 inline constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 
-/// How many of its samples each cell has: 2^doublings as many as an element that has them all in
-/// equal parts. A cell's mean stands for the same part of the hemisphere, however many there are.
+/// Samples of each cell: 2^doublings times as many as with equal parts for all cells. A cell's mean
+/// stands for the same part of the hemisphere, however many there are.
 struct CellShares {
   std::array<uint8_t, kCells> doublings{};
 
@@ -67,16 +67,16 @@ struct RayBatch {
   /// The cell of the k-th ray.
   size_t cell_of(uint32_t k) const;
   uint32_t doublings_of(size_t k) const { return doublings.empty() ? 0 : doublings[k]; }
-  /// What it counts: 2^-doublings.
+  /// The weight of the k-th ray: 2^-doublings.
   float weight_of(size_t k) const { return std::ldexp(1.0f, -int(doublings_of(k))); }
-  /// Whether the k-th ray belongs to the second half of its cell's samples, which are those of the
+  /// True: the k-th ray belongs to the second half of its cell's samples. `samples`: of the
   /// element.
   bool in_second_half(size_t k, Samples samples) const {
     return samples.doubled(doublings_of(k)).in_second_half(sample[k]);
   }
 };
 
-/// What the seeds of all elements' rays are made of.
+/// The base of the seeds of all elements' rays.
 inline uint64_t seed_of_all_rays(uint64_t seed) { return seed ^ 0x6a7e; }
 /// The seed of those that follow a guide: it sets their directions apart from those that told where
 /// to look.

@@ -14,7 +14,7 @@ namespace luxel::gather {
 struct StoredHit {
   uint64_t bits = 0;
 
-  /// What is known of the ray besides where it ended.
+  /// Properties of the ray besides the place where it ended.
   struct Ray {
     uint32_t tint = 2047;      ///< what it passed, see pack_tint; 2047 is white
     bool second_half = false;  ///< which half of its element's samples it belongs to

@@ -1,4 +1,4 @@
-// What members of a team make of their own tiles, given to all others.
+// Gives the results that members of a team have for their own tiles to all others.
 #pragma once
 
 #include <algorithm>

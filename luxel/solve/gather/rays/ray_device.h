@@ -1,5 +1,5 @@
-// What a graphics device does of gather; luxel/solve/device/ has one. Gather itself knows no
-// graphics.
+// A graphics device that traces rays for gather; luxel/solve/device/ has one. Gather itself knows
+// no graphics.
 #pragma once
 
 #include <span>
@@ -31,8 +31,9 @@ class RayDevice {
   /// lost.
   virtual Status begin(const TraceScene& in) = 0;
 
-  /// What lights places of the scene until forget(); null where it does not know all that shines
-  /// there: direct light is the processor's then. Errors: no memory, the device is lost.
+  /// The device that lights places of the scene until forget(). Null where it does not know all
+  /// that shines there: direct light is the processor's then. Errors: no memory, the device is
+  /// lost.
   virtual Result<light::LightDevice*> light_device(const TraceScene& in) = 0;
 
   /// trace_more(), but that the hits stay on the device until forget(), and sweep() has what they
@@ -42,8 +43,8 @@ class RayDevice {
   virtual Status trace(const TraceScene& in, std::span<const uint16_t> target,
                        const TraceParams& params, TracedHits& hits, Progress& progress) = 0;
 
-  /// What each element's rays bring from the map, of those rounds of trace() that count. Errors: no
-  /// memory, the device is lost.
+  /// Light that each element's rays bring from the map, of those rounds of trace() that count.
+  /// Errors: no memory, the device is lost.
   virtual Status sweep(const RadiosityMap& map, std::span<Gathered> out) = 0;
 
   /// Gives the memory of the scene and of trace() back.

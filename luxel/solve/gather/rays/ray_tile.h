@@ -1,4 +1,4 @@
-// How the rays of a tile's elements ended, ray by ray.
+// Ends of the rays of a tile's elements, ray by ray.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace luxel::gather {
 
-/// How an element's ray ended.
+/// The end of an element's ray.
 enum class RayEnd : uint8_t {
   hit,      ///< on a surface that the map knows: it has a StoredHit
   behind,   ///< the same, on the back of a surface that reflects from behind
@@ -21,8 +21,8 @@ enum class RayEnd : uint8_t {
   followed  ///< where the map has no answer: it was followed on (near_paths.h)
 };
 
-/// What an element's rays saw outside: the sum of radiances, that of their squared luminances, and
-/// that of the luminances of the second half of the samples.
+/// Light that an element's rays saw outside: sums of the radiances, of their squared luminances,
+/// and of the luminances of the second half of the samples.
 struct EscapedLight {
   Rgb sum{};
   float luminance2 = 0, second_luminance = 0;
@@ -49,7 +49,7 @@ struct RayTile {
   std::vector<float> near_m;
 };
 
-/// How many rays have ended so.
+/// The number of rays that ended so.
 size_t count_of(std::span<const RayEnd> ends, RayEnd end);
 /// The first byte from `from` on that has the value; bytes.size() where there is none.
 size_t next_of(std::span<const std::byte> bytes, uint8_t value, size_t from);

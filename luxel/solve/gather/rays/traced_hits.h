@@ -1,4 +1,4 @@
-// What the rays of all elements have met, round by round.
+// Hits of the rays of all elements, round by round.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ namespace luxel::gather {
 
 class RayDevice;
 
-/// What rays have met, in rounds of tracing: each adds samples to some of the elements.
+/// Hits of rays, in rounds of tracing: each adds samples to some of the elements.
 struct TracedHits {
   std::vector<HitStore> rounds;
   /// Where the hits of all rounds are, whose stores are empty; null: in those.
   RayDevice* device = nullptr;
-  /// Who has traced them: each member has the hits of its tiles, in all rounds. Null: all are here.
+  /// The team that has traced them: each member has the hits of its tiles, in all rounds. Null: all
+  /// are here.
   Team* team = nullptr;
   std::vector<uint32_t> owner;      ///< with a team, per tile, its member's rank
   std::vector<uint16_t> samples;    ///< per element, of all rounds that count
@@ -61,8 +62,8 @@ struct TracedHits {
 /// The arrays of TracedHits that no_hits() may put into mapped memory.
 inline constexpr uint64_t kBroughtBytesPerElement = bytes_per_entry(
     &TracedHits::sky, &TracedHits::sky_luminance2, &TracedHits::sky_first_less_second);
-/// What TracedHits takes per element besides the hits themselves, in one round: its own arrays, and
-/// where each element's hits end.
+/// Memory of TracedHits per element besides the hits themselves, in one round [bytes]: its own
+/// arrays, and where each element's hits end.
 inline constexpr uint64_t kTracedBytesPerElement =
     bytes_per_entry(&TracedHits::samples, &TracedHits::last_round, &TracedHits::first_round,
                     &TracedHits::guided, &TracedHits::counted, &TracedHits::escaped,
@@ -72,24 +73,24 @@ inline constexpr uint64_t kTracedBytesPerElement =
 inline constexpr uint64_t kEndCountBytesPerElement =
     bytes_per_entry(&TracedHits::escaped, &TracedHits::met_double_sided_back);
 
-/// Whether the hits of a tile are here.
+/// The hits of a tile are here.
 inline bool has_tile(const TracedHits& hits, size_t tile) {
   return !hits.team || hits.owner[tile] == hits.team->rank();
 }
 
-/// Whether an element lies inside a solid, under a floor or behind a wall (transport::is_hidden).
+/// An element lies inside a solid, under a floor or behind a wall (transport::is_hidden).
 inline bool is_hidden(const TracedHits& hits, size_t element) {
   return transport::is_hidden(
       transport::BackFaces{.rays = hits.counted[element], .one_sided = hits.met_back[element]});
 }
-/// What an element's rays met of backs.
+/// The backs that an element's rays met.
 inline transport::BackFaces back_faces(const TracedHits& hits, size_t element) {
   return {hits.counted[element], hits.met_back[element], hits.met_double_sided_back[element]};
 }
 
-/// Whether an element's rays follow the guide.
+/// An element's rays follow the guide.
 inline bool is_guided(const TracedHits& hits, size_t element) { return hits.guided[element] != 0; }
-/// How many rays an element has for each of its samples.
+/// Rays of an element per sample.
 float rays_per_sample(const TracedHits& hits, size_t element);
 
 /// Forgets what an element's rays have brought, but for what their ends tell: the next round begins

@@ -1,4 +1,4 @@
-// What gather builds on where an earlier bake of the scene is known. docs/method/rebake.md
+// Parts of an earlier bake of the scene that gather builds on. docs/method/rebake.md
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace luxel::gather {
 
-/// What an earlier bake leaves to one of the changed scene on the same map.
+/// Parts of an earlier bake that serve one of the changed scene on the same map.
 struct Earlier {
   EarlierRays rays;
   std::vector<std::vector<uint16_t>> rounds;  ///< samples per element after each, at least one

@@ -7,8 +7,8 @@
 namespace luxel::gather {
 namespace {
 
-/// How far light reaches an element's texel from its position, in widths of a texel: the points of
-/// supersampling lie all over it, and its own sample anywhere in it.
+/// Reach of an element's lit points around its position, in widths of a texel: the points of
+/// supersampling lie all over its texel, and its own sample anywhere in it.
 constexpr float kTexelReach = 1.5f;
 
 bool shines(const light::Lights& lights) {

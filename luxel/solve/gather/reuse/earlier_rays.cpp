@@ -19,7 +19,7 @@ bool is_sound(const RayTile& rays, uint32_t places) {
          std::ranges::is_sorted(rays.hits.end);
 }
 
-/// Whether the half-line meets the box.
+/// The half-line meets the box.
 bool meets(const Box3& box, Vec3 from, Vec3 direction) {
   float begin = 0, end = INFINITY;
   for (int axis = 0; axis < 3; ++axis) {

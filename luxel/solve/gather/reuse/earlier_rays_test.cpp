@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::byte>;
 
-/// Whether the half-line meets the box with `margin` on all sides, which may be less than 0.
+/// True: the half-line meets the box with `margin` on all sides, which may be less than 0.
 bool meets_exactly(const Box3& box, const trace::Ray& ray, double margin) {
   double begin = 0, end = INFINITY;
   for (int axis = 0; axis < 3; ++axis) {
@@ -214,7 +214,7 @@ RayTile some_tile() {
 
 class KeptRays : public WithFolder {
  protected:
-  /// What is written into a file by way of a store that keeps everything.
+  /// Writes into a file by way of a store that keeps everything, and opens the file.
   RecordFile kept(const std::function<void(PartStore&)>& write) {
     const fs::path file = folder_ / "rays";
     {

@@ -34,7 +34,7 @@ TEST_P(EarlierEdits, GiveWhatIsTracedFromScratch) {
   expect_same_light(again, scratch);
   EXPECT_EQ(again.rays + again.rays_kept, scratch.rays);
   EXPECT_EQ(scratch.rays_kept, 0u);
-  // What is not followed on, has not escaped through glass, and lies far from what moves.
+  // Kept rays are not followed on, have not escaped through glass, and lie far from all that moves.
   const uint64_t all = 32 * now->elements.size();
   const uint64_t followed = count_of(expected, RayEnd::followed);
   const uint64_t known =
@@ -121,7 +121,7 @@ void make_dark(RayTile& tile, size_t k) {
   for (size_t later = k; later < tile.hits.end.size(); ++later) tile.hits.end[later] -= hits;
 }
 
-// What is kept of an element that lies elsewhere is not looked at; of others it is.
+// Rays kept for an element that lies elsewhere now are not looked at; those of others are.
 TEST_F(EarlierGather, OfElementsThatMovedAllRaysAreTraced) {
   const auto room = lay_out(open_room(), 48);
   const size_t n = room->elements.size();

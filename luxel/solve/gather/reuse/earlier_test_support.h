@@ -122,7 +122,7 @@ class EarlierGather : public WithFolder {
   Progress progress_;
 };
 
-/// What is known of `before` for `now`, with boxes around moved instances.
+/// The earlier bake of `before` for `now`, with boxes around moved instances.
 inline Earlier earlier_of(const RecordFile& rays, const Room& before, const Room& now,
                           const Gather& light) {
   const size_t n = before.elements.size();

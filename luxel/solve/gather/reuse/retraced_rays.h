@@ -33,7 +33,7 @@ struct EarlierCursor {
   bool advance(size_t k, size_t count, bool knows_escaped);
 };
 
-/// What rays are chosen by.
+/// The data by which rays to be retraced are chosen.
 struct RetraceScene {
   const transport::Elements& elements;
   const EarlierRays& earlier;

@@ -11,10 +11,10 @@
 
 namespace luxel::gather {
 
-/// What traces rays of paths.
+/// The device that traces the rays of paths, and lights the places that they meet.
 struct PathDevice {
   light::LightDevice& light;
-  /// What each ray meets first. Errors: no memory, the device is lost.
+  /// Finds the first hit of each ray. Errors: no memory, the device is lost.
   std::function<Status(std::span<const trace::Ray>, std::span<trace::Hit>)> closest_hits;
 };
 

@@ -54,7 +54,7 @@ struct KnownFollowed {
   }
 };
 
-/// How an element's rays end now and, where that is known, ended in the earlier bake.
+/// Ends of an element's rays, now and, where those are known, in the earlier bake.
 struct ElementEnds {
   size_t element = 0;
   std::span<const RayEnd> now, then{};

@@ -31,8 +31,8 @@ bool is_sound(const HitTile& tile, uint32_t places) {
                      [&](const StoredHit& hit) { return hit.base() < places; });
 }
 
-/// Whether what a round is said to have made of elements [begin, end) of `hits` can be: later
-/// stages index by it. Files of parts come from other machines.
+/// True: a round can have made `found` of elements [begin, end) of `hits`. Later stages index by
+/// it, and files of parts come from other machines.
 bool can_follow(const TracedHits& hits, const TracedHits& found, std::span<const uint16_t> target,
                 size_t begin, size_t end) {
   const size_t round = hits.rounds.size();

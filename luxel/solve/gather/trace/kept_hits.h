@@ -34,9 +34,9 @@ struct FoundTile {
 std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t end, uint32_t places,
                                    std::span<const uint16_t> target, TracedHits& hits);
 
-/// What `hits` counts per element, for those of a tile.
+/// Writes the counts of `hits` for the elements of a tile.
 void put_counts(const TracedHits& hits, size_t tile, ByteWriter& out);
-/// That into `hits`. Returns whether there was enough.
+/// Reads them into `hits`. False: there was not enough.
 bool get_counts(ByteReader& in, size_t tile, TracedHits& hits);
 
 }  // namespace luxel::gather

@@ -162,7 +162,7 @@ TEST_F(KeptParts, AreSharedOutAndGiveTheSameBits) {
   }
 }
 
-// What was kept is what is used: other light in a part is other light in the result.
+// Kept parts are used: other light in a part is other light in the result.
 TEST_F(KeptParts, AreUsed) {
   const auto room = some_room();
   const GatherParams params = some_params();

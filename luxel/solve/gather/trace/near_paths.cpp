@@ -70,7 +70,7 @@ float near_m(const NearScene& in, const trace::Hit& hit) {
 
 MapAnswers map_answers(const NearScene& in, const trace::Hit& hit) {
   const scene::Material& material = scene::material_at(in.scene, hit.point());
-  // What scatters light through shines by the light behind it, which the map knows.
+  // A surface that scatters light through shines by the light behind it, which the map knows.
   if (material.diffuse_transmission > 0) return MapAnswers::yes;
   if (hit.back_face)
     return scene::reflects_from_behind(material) ? MapAnswers::no : MapAnswers::yes;

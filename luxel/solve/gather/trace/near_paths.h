@@ -1,12 +1,12 @@
 // Rays that end nearby, or on the back of a surface, are followed on.
 //
-// What a texel of the map holds stands for all of the texel. A ray that ends nearer than a texel is
-// wide asks for less: for the dark inside of a joint between two solids, whose texel lies for the
-// most part in the sun, or for the bright edge of a sill. There the light of the place itself is
-// worked out: what comes straight from lights, and one more ray, which ends farther away and reads
-// the map there, or is followed on again. The map holds the light of fronts only: on the back of a
-// double-sided surface the same is done, however far it is; and where a wall leaves no texel on the
-// place's own side. docs/method/gather.md
+// The light in a texel of the map stands for all of the texel. A ray that ends nearer than a texel
+// is wide asks for less: for the dark inside of a joint between two solids, whose texel lies for
+// the most part in the sun, or for the bright edge of a sill. There the light of the place itself
+// is worked out: what comes straight from lights, and one more ray, which ends farther away and
+// reads the map there, or is followed on again. The map holds the light of fronts only, so the back
+// of a double-sided surface is treated alike, however far it is. So is a place whose own side of a
+// wall has no texel. docs/method/gather.md
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ namespace luxel::gather {
 /// transport::texel_width_m() per drawn triangle.
 std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas);
 
-/// What is left of a ray of an element.
+/// A path that goes on from where an element's ray ended.
 struct NearPath {
   uint32_t element = 0;
   uint32_t sample = 0;       ///< of its element: its random numbers are the same in any round
@@ -37,15 +37,15 @@ struct NearPath {
   Rgb light{};               ///< radiance that it has brought so far
   trace::Hit hit;            ///< where it is
   Vec3 direction;            ///< of its last ray; before the first step it has none
-  /// How far from where its element's own ray starts its first step does, at most: as far as the
-  /// ray was long, and as the place is lifted where the surface bulges.
+  /// The most that the start of its first step is away from the start of its element's own ray [m]:
+  /// the ray's length plus the lift of the place where the surface bulges.
   float first_m = 0;
   bool is_plain = true;  ///< it met a front there, and has taken one step at most
 };
 /// The part of a sample that the path's ray is.
 inline float weight_of(const NearPath& path) { return std::ldexp(1.0f, -int(path.doublings)); }
 
-/// What paths look at.
+/// The scene that paths look at.
 struct NearScene {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
@@ -91,13 +91,13 @@ light::Receiver receiver_of(const NearScene& in, uint64_t depth, NearPath& path)
 /// proportion to what it carries.
 bool go_on(const light::Receiver& at, uint64_t depth, NearPath& path);
 
-/// Whether the map has an answer for a place that a path has met; where_own: if own_lookup() reads
-/// something there.
+/// Existence of an answer in the map for a place that a path has met. where_own: there is one if
+/// own_lookup() reads something there.
 enum class MapAnswers : uint8_t { yes, no, where_own };
 MapAnswers map_answers(const NearScene& in, const trace::Hit& hit);
-/// How far a ray that meets a front must go for the map to have an answer [m].
+/// The least length of a ray to a front at which the map has an answer [m].
 float near_m(const NearScene& in, const trace::Hit& hit);
-/// Whether the map has no answer for the place that a path has met, and light comes along the path.
+/// True: the map has no answer for the place that a path has met, and light comes along the path.
 bool goes_on(const NearScene& in, const NearPath& path);
 
 template <class End>

@@ -1,4 +1,4 @@
-// What only rays know that are followed on: places whose texel is wider than their light varies.
+// Light that varies within a texel: only rays that are followed on know it.
 #include "luxel/solve/gather/trace/near_paths.h"
 
 #include <gtest/gtest.h>
@@ -151,8 +151,8 @@ double wall_factor(double x, double low, double high) {
   return 0.5 * (x / std::hypot(x, low) - x / std::hypot(x, high));
 }
 
-/// What the wall sends to a floor point: its light, strip by strip. A wall point at a height y sees
-/// the floor with (1 - y / |(y, size)|) / 2 and the sky with the rest.
+/// E at a floor point from the wall, strip by strip. A wall point at a height y sees the floor with
+/// (1 - y / |(y, size)|) / 2 and the sky with the rest.
 double light_from_wall(const WallCase& c, double x) {
   double sum = 0;
   const int strips = 1000;

@@ -1,4 +1,4 @@
-// What the number of samples, threads and the seed do to gather's light, and where rays are kept.
+// Gather's light for other numbers of samples and threads, other seeds and other stores of rays.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -1,4 +1,4 @@
-// What rays of elements meet, made ready for one round of them.
+// The scene that rays of elements meet, made ready for one round of them.
 #pragma once
 
 #include <optional>

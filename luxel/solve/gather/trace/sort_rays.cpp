@@ -19,7 +19,8 @@ void count_ends(RayEnd end, int rays, size_t element, TracedHits& out) {
 
 bool is_hit(RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; }
 
-/// What rays of the batch see outside, in `light`, without what they have passed.
+/// Sets look.light to the radiance outside along rays of the batch, without the tint of things that
+/// they have passed.
 void look_outside(const RayScene& in, const RayBatch& batch, OutsideLook& look) {
   look.directions.clear();
   for (const uint32_t k : look.rays) look.directions.push_back(batch.rays[k].direction);
@@ -73,7 +74,7 @@ void add_escaped(const RayScene& in, const EscapedLight& light, size_t element, 
   add_sky(in.layers, light.sum, element, out);
 }
 
-/// Whether the map is not asked about what a ray has met: its path goes on from there.
+/// True: the map is not asked about the place that a ray has met, and its path goes on from there.
 bool passes_map_by(const RayScene& in, const trace::Hit& hit) {
   return in.near != nullptr && map_answers(*in.near, hit) == MapAnswers::no;
 }
@@ -124,7 +125,7 @@ NearPath path_from(const RayScene& in, const RayBuffers& buffers, size_t k, size
   return path;
 }
 
-/// Whether the batch's k-th ray is followed on.
+/// The batch's k-th ray is followed on.
 bool is_followed(const RayScene& in, const RayBuffers& buffers, size_t k) {
   if (!in.near || (!buffers.tint.empty() && max_component(buffers.tint[k]) <= 0)) return false;
   const MapAnswers answers = map_answers(*in.near, buffers.hits[k]);
@@ -132,7 +133,7 @@ bool is_followed(const RayScene& in, const RayBuffers& buffers, size_t k) {
          (answers == MapAnswers::where_own && buffers.places.of_ray[k].has_no_texel);
 }
 
-/// How the batch's k-th ray has ended; one to be followed on is added to buffers.near.paths.
+/// The end of the batch's k-th ray. A ray to be followed on is added to buffers.near.paths.
 RayEnd end_of(const RayScene& in, RayBuffers& buffers, size_t k, size_t element, Samples samples) {
   const trace::Hit& hit = buffers.hits[k];
   if (!hit.found()) return RayEnd::escaped;
@@ -144,7 +145,7 @@ RayEnd end_of(const RayScene& in, RayBuffers& buffers, size_t k, size_t element,
   return hit.back_face ? RayEnd::behind : RayEnd::hit;
 }
 
-/// What a ray met then and meets now; null: it has no hit. Most meet what they met.
+/// Notes a ray's hit then as lost and that now as won; null: no hit. Most meet what they met.
 void note_change(const RayScene& in, const StoredHit* then, const StoredHit* now, size_t element,
                  TracedHits& out) {
   if (then && now && then->bits == now->bits) return;

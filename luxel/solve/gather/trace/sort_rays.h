@@ -1,5 +1,5 @@
-// What the rays of one element met, as counts, hits and light. docs/method/gather.md,
-// docs/method/rebake.md
+// Sorts the rays of one element by what they met, into counts, hits and light.
+// docs/method/gather.md, docs/method/rebake.md
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace luxel::gather {
 
-/// What rays meet, and what they see beyond.
+/// The scene that rays meet, and the surroundings that they see beyond.
 struct RayScene {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
@@ -34,7 +34,7 @@ struct FollowedPath {
   StoredHit hit;
 };
 
-/// What some rays see outside.
+/// Light that some rays see outside.
 struct OutsideLook {
   std::vector<uint32_t> rays;  ///< of the batch
   std::vector<Vec3> directions;
@@ -68,7 +68,7 @@ struct RayBuffers : RetraceBuffers {
   PlacesMet places;
 };
 
-/// Whether what a ray has met sends light towards it.
+/// True: the surface that a ray has met sends light towards it.
 bool shows_light(const RayScene& in, const trace::Hit& hit);
 
 /// Where light at a point of the scene is read from the map, on its own side of every wall.

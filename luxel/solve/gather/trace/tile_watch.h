@@ -26,7 +26,7 @@ class TileQueue {
   std::vector<uint32_t> left_;  ///< the next one is the last
 };
 
-/// Who watches a round. What it is told changes no bit of the round's result.
+/// Watches a round. Its calls change no bit of the round's result.
 struct TileWatch {
   TileQueue* queue = nullptr;
   /// Gets the hits of a tile's elements, from number `first` on, by the thread that has traced

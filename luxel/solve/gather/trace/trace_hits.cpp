@@ -100,7 +100,7 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayBuffers& bu
     tile.rays_met.escaped.emplace_back();
     return;
   }
-  // What was there before is of the first half now.
+  // Light that was there before is of the first half now.
   out.sky_first_less_second[i] = luminance(out.sky[i]);
   out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
   if (ray_scene.sent && !(before && before->escaped)) out.unknown[i] = 1;
@@ -136,7 +136,7 @@ size_t most_added(std::span<const uint16_t> target, const TracedHits& hits) {
   return most;
 }
 
-/// How many samples some elements will get in a round.
+/// Samples that the elements [begin, end) will get in a round.
 uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hits, size_t begin,
                          size_t end) {
   uint64_t planned = 0;
@@ -145,7 +145,7 @@ uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hit
   return planned;
 }
 
-/// What tracing a tile needs, reused from tile to tile.
+/// Buffers for tracing a tile, reused from tile to tile.
 struct TileBuffers {
   RayBuffers rays;
   RayTileBuffer earlier;
@@ -160,7 +160,7 @@ void clear(TracedTile& tile) {
   tile.rays = tile.kept = 0;
 }
 
-/// What an earlier bake knew of the elements [begin, end); null: nothing.
+/// Rays of the elements [begin, end) in an earlier bake; null: none are known.
 const RayTile* earlier_tile(const Round& round, size_t begin, size_t end, uint64_t planned,
                             RayTileBuffer& buffer) {
   if (!round.earlier) return nullptr;
@@ -170,8 +170,8 @@ const RayTile* earlier_tile(const Round& round, size_t begin, size_t end, uint64
   return rays && rays->ends.size() == planned ? rays : nullptr;
 }
 
-/// Whether an element's rays that were followed on may bring what they brought, as far as lights
-/// and reflectances are concerned. They are not told apart by layers.
+/// True: an element's followed rays may bring what they brought, as far as lights and reflectances
+/// are concerned. False with layers, by which kept light is not told apart.
 bool stay_followed(const Round& round, size_t element, float near_m) {
   const EarlierRays& earlier = *round.earlier;
   return earlier.same_light && !earlier.same_light_m.empty() && round.ray_scene.layers == nullptr &&

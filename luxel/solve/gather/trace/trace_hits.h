@@ -23,7 +23,7 @@
 
 namespace luxel::gather {
 
-/// What rays of elements are traced in. The elements need not be those of a map.
+/// The scene in which elements' rays are traced. The elements need not be those of a map.
 struct TraceScene {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;

@@ -12,7 +12,7 @@
 namespace luxel {
 inline namespace base {
 
-/// What members have in common.
+/// The state that members share.
 struct ThreadTeamState {
   explicit ThreadTeamState(uint32_t members) : size(members), sent(members) {}
 

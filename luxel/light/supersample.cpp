@@ -118,7 +118,7 @@ KeptStage kept_stage(const SupersampleParams& params, std::span<const uint32_t> 
   return {params.direct.parts, digest.value()};
 }
 
-/// What averages light over the points of some texels.
+/// Averages light over the points of some texels.
 struct Averaging {
   const TexelScene& in;
   const SupersampleParams& params;

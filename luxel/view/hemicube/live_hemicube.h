@@ -36,7 +36,7 @@ struct HemicubeNews {
   bool is_solved = false;
   std::optional<std::string> said{};  ///< why there is no light; a sentence
 };
-/// What is newer takes the place of what is older.
+/// Newer news take the place of older ones.
 void merge(HemicubeNews newer, HemicubeNews& news);
 
 enum class HemicubeState : uint8_t { solving, paused, solved, failed };

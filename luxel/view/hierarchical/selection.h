@@ -41,7 +41,7 @@ struct Graph {
   std::optional<LightSurface> surface;
 };
 
-/// What probes have told.
+/// Light that probes have found.
 struct Probed {
   std::optional<LightProbe> light;
   std::optional<BackprojectionProbe> sources;

@@ -63,7 +63,7 @@ struct LiveNews {
   std::optional<std::string> said{};           ///< of saving, or why there is no light; a sentence
 };
 
-/// What is newer takes the place of what is older.
+/// Newer news take the place of older ones.
 void merge(LiveNews newer, LiveNews& news);
 
 }  // namespace luxel::view

@@ -40,7 +40,7 @@ Result<pipeline::IndirectError> check_lamps(const LampsToCheck& asked, Progress&
 using LampCheck = Worker<LampsToCheck, pipeline::IndirectError>;
 std::unique_ptr<LampCheck> begin_lamp_check();
 
-/// What is to be told of it: what was compared, and how far it is off.
+/// One sentence: the texels compared, and how far their light is off.
 std::string sentence_of(const pipeline::IndirectError& error, const LampCheckParams& params);
 
 }  // namespace luxel::view

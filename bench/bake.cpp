@@ -61,7 +61,7 @@ Result<Table> measure_atlas(const std::filesystem::path& shared, int threads) {
     const auto start = Clock::now();
     LUXEL_TRY(const atlas::Atlas atlas, atlas::make_atlas(imported.scene, params, progress));
     const double seconds = seconds_since(start);
-    // How good the atlas is.
+    // Measures of the atlas.
     const atlas::TexelMap map = atlas::rasterise(imported.scene, atlas);
     const atlas::AtlasStats s = atlas::atlas_stats(imported.scene, atlas, map);
     table.rows.push_back({c.name, fmt::format("{}", atlas.corners.size()),

@@ -12,7 +12,7 @@
 
 namespace luxel::bench {
 
-/// What a benchmark prints. A row whose scene is not on this machine is left out and noted.
+/// Output of a benchmark. A row whose scene is not on this machine is left out and noted.
 struct Table {
   std::string name;
   int threads = 0;
@@ -70,7 +70,7 @@ Result<Table> measure_denoise(const std::filesystem::path& shared, int threads);
 /// Shared scenes under sun and sky, a map against the path tracer, real light and many lamps.
 Result<Table> measure_scenes(const std::filesystem::path& shared, int threads);
 
-/// What averaging direct light over texels costs, and what it takes away of their error.
+/// Cost of averaging direct light over texels, and the error that it takes away.
 Result<Table> measure_supersample(const std::filesystem::path& shared, int threads);
 
 /// Seconds to 1 % against the path tracer, adaptive against uniform rays, plans, times left and
@@ -80,10 +80,10 @@ Result<Table> measure_budget(const std::filesystem::path& shared, int threads);
 Result<Table> measure_budget_in(const std::filesystem::path& shared, const std::string& scene,
                                 int threads);
 
-/// What a lightmap for each of 20 lamps costs besides that of all.
+/// Cost of a lightmap for each of 20 lamps besides that of all.
 Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
 
-/// What a bake after an edit costs that builds on one that is kept (docs/method/rebake.md).
+/// Cost of a bake after an edit that builds on a kept one (docs/method/rebake.md).
 Result<Table> measure_rebake(const std::filesystem::path& shared, int threads);
 
 /// FLIP of pictures of bakes of each quality against a long one, and processor seconds.

@@ -128,7 +128,7 @@ struct Watched {
   double seconds = 0;
   std::vector<std::pair<double, double>> shown;  ///< when, and seconds left, < 0: not known
 
-  /// What was shown when a share of the bake was over, over what was left then; < 0: nothing was.
+  /// Time left as shown once a share of the bake was over, over the true time left; < 0: unknown.
   double ratio_at(double share) const {
     for (const auto& [at, left] : shown)
       if (at >= share * seconds) return left < 0 ? -1 : left / (seconds - at);

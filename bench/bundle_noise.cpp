@@ -1,4 +1,4 @@
-// What noise light has when texels share directions.
+// Noise of light when texels share directions.
 #include <cmath>
 #include <map>
 

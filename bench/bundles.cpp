@@ -85,7 +85,7 @@ Result<double> whole_bake_seconds(const BundleScene& scene, int resolution) {
   return processor_seconds_since(start);
 }
 
-/// What is left of a bake when its rays take less time, and nothing else more.
+/// Share of a bake's time that remains when its rays take less time, and all else as long.
 double time_left(double share, double seconds, double seconds_as_gather) {
   return 1 - share * (1 - seconds / seconds_as_gather);
 }

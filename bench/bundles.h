@@ -32,7 +32,7 @@ struct Bundles {
 };
 Bundles make_bundles(const validate::Prepared& p, std::span<const uint32_t> texels);
 
-/// What is traced.
+/// The scene and its rays, ready to be traced.
 struct BundleTrace {
   const validate::Prepared& p;
   uint32_t samples = 0;
@@ -45,7 +45,7 @@ BundleTrace bundle_trace(const validate::Prepared& p, uint32_t samples);
 void trace_as_gather(const BundleTrace& in, std::span<const uint32_t> elements,
                      trace::Packets packets);
 
-/// What traces the rays of a bundle.
+/// Method that traces the rays of a bundle.
 enum class BundleTracer : uint8_t {
   embree,     ///< packets of rays of one direction
   projection  ///< parallel_hits() where bundles are flat and large enough; else Embree
@@ -54,7 +54,7 @@ void trace_bundles(const BundleTrace& in, const Bundles& bundles, BundleTracer b
 /// The share of projected rays that meet something elsewhere than Embree says, of one bundle in 16.
 double share_that_differs(const BundleTrace& in, const Bundles& bundles);
 
-/// Notes what noise light has when texels share directions: of texels, and of means over squares.
+/// Notes the noise of light when texels share directions: of texels, and of means over squares.
 Status measure_shared_noise(const std::filesystem::path& file, const std::string& name,
                             Table& table);
 

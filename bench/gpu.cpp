@@ -117,7 +117,7 @@ Result<double> made_rate(const trace::DeviceRayTracer& tracer, const validate::P
                      [&] { return device::trace_first_hits(tracer, commands, hits); });
 }
 
-/// What one kind of hierarchy makes of a scene's rays.
+/// Results of one kind of hierarchy with a scene's rays.
 struct DeviceRates {
   size_t triangles = 0;
   double built_s = 0;

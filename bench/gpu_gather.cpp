@@ -36,7 +36,7 @@ gather::RadiosityMap even_map(const validate::Prepared& p, const gather::TracedH
   return out;
 }
 
-/// What rays bring from the map, as luminance per element and ray.
+/// Light that rays bring from the map: luminance per element, the mean over its rays.
 struct Swept {
   std::vector<float> light;
   double seconds = 0;  ///< of the fastest sweep

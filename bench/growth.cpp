@@ -61,7 +61,7 @@ std::string write_scene(const Growth& growth, const std::filesystem::path& file)
   return written ? std::string() : written.error().message;
 }
 
-/// What a bake took.
+/// Size, memory and time of a bake.
 struct Grown {
   Growth of;
   uint64_t triangles = 0, texels = 0, peak_bytes = 0;

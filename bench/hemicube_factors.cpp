@@ -1,4 +1,4 @@
-// What the solver's own hemicubes see of a square, against closed forms.
+// Form factors between two squares by the solver's own hemicubes, against closed forms.
 #include <cmath>
 
 #include "bench/hemicube.h"

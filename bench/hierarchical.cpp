@@ -130,7 +130,7 @@ Result<Table> growth_table(Progress& progress) {
     LUXEL_TRY(const h::Solution s, h::solve(scene, tracer, params, progress));
     const double seconds = processor_seconds_since(start);
     const double triangles = double(scene::first_triangles(scene).back());
-    // What the links take, with their lists of blockers.
+    // Memory of the links, with their lists of blockers.
     uint64_t bytes = 0;
     for (const auto& links : s.links.of)
       for (const h::Link& link : links) bytes += sizeof(link) + 4 * link.blockers.capacity();

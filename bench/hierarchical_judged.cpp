@@ -1,4 +1,4 @@
-// What the hierarchical solution is held against: paths, rays, the law that energy is kept.
+// Judges of the hierarchical solution: paths, rays, and the conservation of energy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ Result<std::vector<std::string>> lightmap_row(std::string name, scene::Scene sce
                        solved.seconds);
 }
 
-/// What a camera sees: light where the rays through pixels' middles end.
+/// Agreement of a camera's picture with paths: light where the rays through pixels' middles end.
 Result<std::vector<std::string>> picture_row(std::string name, const scene::Scene& scene,
                                              std::optional<double> eps, Progress& progress) {
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
@@ -100,8 +100,8 @@ Result<Table> path_table(Progress& progress) {
   return t;
 }
 
-/// How far exact light is from what rays bring that meet the same radiosity, in their standard
-/// errors.
+/// Difference between exact light and the mean of rays that meet the same radiosity, in standard
+/// errors of that mean.
 double standard_errors_off(const h::Solution& s, const scene::Scene& scene,
                            const trace::RayTracer& tracer, const h::Receiver& at, Rgb exact,
                            uint64_t seed) {

@@ -96,7 +96,7 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
       settings.output = folder.path / "all", settings.layers = light::LayerMode::per_light;
       LUXEL_TRY_STATUS(time_again(settings, layered));
     }
-    // How far the sum of the layers is from the lightmap.
+    // Difference between the sum of the layers and the lightmap.
     const nlohmann::json& layers = layered.report["layers"];
     LUXEL_TRY(const double error, sum_error(settings.output, layers));
     const double ratio = layered.seconds / alone.seconds;

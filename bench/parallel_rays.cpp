@@ -81,12 +81,12 @@ Box3 fill_group(const scene::Scene& scene, std::span<const FlatTriangle> from, T
   return box;
 }
 
-/// How a place is seen: across the direction, and along it. `origin` lies near the rays.
+/// Axes in which a place is seen: across the direction, and along it. `origin` lies near the rays.
 struct View {
   Vec3 across, up, along, origin;
 };
 
-/// What boxes cover, as they are seen.
+/// Extents of boxes along a view's axes.
 struct SeenBoxes {
   alignas(64) Lanes left, right, low, high, near, far;
 };

@@ -1,7 +1,7 @@
-// What parallel rays of a small scene meet: its triangles are projected along them.
+// Hits of parallel rays in a small scene: its triangles are projected along the rays.
 //
-// Across their direction rays are points, and triangles are triangles in the plane. Whether a ray
-// meets one is three linear functions of its place, and where is a fourth.
+// Across their direction rays are points, and triangles are triangles in the plane. Three linear
+// functions of a ray's place say if it meets a triangle, and a fourth says where.
 #pragma once
 
 #include <array>

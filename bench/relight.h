@@ -1,5 +1,4 @@
-// What relighting costs and how far it errs: codecs, sizes, preparation, and the path tracer's
-// word.
+// Cost and errors of relighting: codecs, sizes, preparation, and the path tracer's word.
 #pragma once
 
 #include <filesystem>
@@ -36,8 +35,8 @@ struct CodecRuns {
   uint64_t colour_bytes = 0;
   double colour_ms = 0;
 
-  /// How many times smaller a run is than the yardstick; how many times faster than one product,
-  /// which is what all bounces take where K is stored, and than iterating F^c.
+  /// Factors by which a run is smaller than the yardstick, faster than one product, which is the
+  /// cost of all bounces where K is stored, and faster than iterating F^c.
   double smaller(const CodecRun& r) const { return double(colour_bytes) / double(r.bytes); }
   double faster(const CodecRun& r) const { return colour_ms / r.ms; }
   double faster_than_iterated(const CodecRun& r) const { return r.products * colour_ms / r.ms; }

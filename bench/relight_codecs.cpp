@@ -101,7 +101,7 @@ Status make_by_rank(const Room& room, std::vector<Made>& all, Progress& progress
   return {};
 }
 
-/// How many products of F^c err by no more than each codec.
+/// For each codec, counts the products with F^c until the error is no more than the codec's.
 void count_products(const Room& room, std::vector<Made>& all) {
   const std::vector<double> errors =
       matrix::errors_of_products(room.prepared, room.trials, kProducts);

@@ -36,7 +36,7 @@ struct UpdateTimes {
   double bc1 = 0;                  ///< one product with K as bc1
 };
 
-/// What is compared with the paper: K of five bounces between patches of the Cornell box.
+/// Results to compare with the paper: K of five bounces between patches of the Cornell box.
 struct PaperRuns {
   size_t patches = 0;
   double reflections_s = 0, bc1_s = 0;          ///< to make K, and bc1 of it

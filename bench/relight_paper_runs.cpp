@@ -1,4 +1,4 @@
-// What the paper measures, measured.
+// The paper's measurements, repeated.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -40,7 +40,7 @@ struct PaperRoom {
   std::span<const float> area_m2() const { return prepared.patched.patches.area_m2; }
 };
 
-/// What patches send first of each light.
+/// Finds the direct light that patches reflect, for each lamp.
 Status light_up(PaperRoom& room, const trace::RayTracer& tracer, Progress& progress) {
   for (const Vec3 position : kLights) {
     scene::PunctualLight lamp;

@@ -15,7 +15,7 @@ namespace {
 
 /// 65,536 patches of so many rays take 4 GB while they are prepared.
 constexpr int kRelightSizesRays = 2048, kRelightSizesRounds = 9;
-/// What unfinished bounces may err by: half of the goal.
+/// Error that unfinished bounces may have: half of the goal.
 constexpr double kErrorOfSweeps = 0.005;
 /// A converged answer by the factors of 65,536 patches takes seconds.
 constexpr int kTrials = 2;

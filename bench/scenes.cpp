@@ -75,7 +75,7 @@ Status measure_real_light(Table& table) {
   real.environment.radiance[30 * 256 + 70] = {50000, 45000, 40000};
   LUXEL_TRY(const double plain, seconds_of(scene::cornell_box()));
   LUXEL_TRY(const double with_map, seconds_of(real));
-  // What it costs over the scene without it.
+  // Cost of the map over the scene without it.
   table.notes.push_back(fmt::format(
       "Cornell box at 512 x 512, default rays: {:.2f} s; under a map with a sun {:.2f} s, {:.2f} "
       "times as long.",

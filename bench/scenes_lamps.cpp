@@ -1,4 +1,4 @@
-// What many lamps cost.
+// Cost of many lamps.
 #include <cmath>
 
 #include "bench/scenes.h"

@@ -12,7 +12,7 @@ struct NamedScene {
 };
 
 std::vector<NamedScene> scenes_of_rays(const std::filesystem::path& shared);
-/// Whether the scene's file is on this machine; notes it in the table when not.
+/// True: the scene is here, procedural or a file on this machine; else the table gets a note.
 bool is_here(const NamedScene& named, Table& table);
 /// Errors: those of the importer.
 Result<scene::Scene> load(const NamedScene& named);

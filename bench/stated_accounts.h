@@ -1,4 +1,4 @@
-// What commands state about their errors, and what is true, scene by scene.
+// Errors that commands state, and true errors, scene by scene.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace luxel::bench {
 
-/// What one statement says and what is true, one entry per scene.
+/// Stated and true errors of one kind of statement, one entry per scene.
 struct Account {
   validate::Claim claim = validate::Claim::bound;
   std::vector<validate::Compared> compared;
@@ -61,8 +61,8 @@ struct JudgedScene {
   }
 };
 
-/// What the codec loses of light, over all patches: the same matrix without a codec is the truth.
-/// What all of the relighter errs by: the path tracer is. Errors: cancelled.
+/// Adds two errors: the codec's loss of light over all patches, against the same matrix without a
+/// codec, and the relighter's whole error, against the path tracer. Errors: cancelled.
 Status add_relight(const JudgedScene& s, Accounts& accounts, Progress& progress);
 
 }  // namespace luxel::bench

@@ -15,7 +15,7 @@ namespace {
 
 using validate::Claim;
 
-/// Whether a point lies in a room, this far from all surfaces.
+/// A point lies in a room, this far from all surfaces.
 bool is_free(const JudgedScene& s, Vec3 place, float clearance_m) {
   constexpr uint32_t kAround = 256;
   uint32_t met = 0;
@@ -80,7 +80,7 @@ transport::Elements relit_places(const JudgedScene& s) {
   return pipeline::places_to_check(s.scene.scene, hash64(s.seed, 0x91ace));
 }
 
-/// What the file of `luxel relight` holds, small; its places are relit_places().
+/// A small file of `luxel relight`; its places are relit_places().
 Result<matrix::RelightData> small_relight(const JudgedScene& s, matrix::CodecKind codec,
                                           Progress& progress) {
   const scene::Scene& scene = s.scene.scene;

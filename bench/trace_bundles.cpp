@@ -1,4 +1,4 @@
-// How bundles are made and traced.
+// Making and tracing bundles.
 #include <algorithm>
 
 #include "bench/bundles.h"

@@ -141,7 +141,7 @@ Result<reference::TexelPaths> judge_texels(const validate::Prepared& p,
                                         {.samples = paths, .seed = seed}, progress);
 }
 
-/// What is known of a texel's light: the mean of all its paths and its standard error.
+/// Estimate of a texel's light: the mean of all its paths and its standard error.
 struct Known {
   Rgb mean, standard_error;
   int paths = 0;

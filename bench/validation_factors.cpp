@@ -166,7 +166,7 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
             read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file));
   progress.begin("view factors", 0);
   LUXEL_TRY(const RowErrors table, measure_rows(rows, progress));
-  // How errors fall with rays.
+  // Errors against the number of rays.
   std::vector<viewfactor::SampledParams> hemicubes, rays;
   for (const int n : {8, 16, 32, 64, 128, 256, 512})
     hemicubes.push_back({.samples = 1, .hemicube = n});

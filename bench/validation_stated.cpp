@@ -60,7 +60,7 @@ pipeline::BakeSettings small_settings(const JudgedScene& s, std::string_view sol
   return out;
 }
 
-/// How a solver's RMS is meant: what rays measure is stated with one standard error more.
+/// Meaning of a solver's RMS: an error measured by rays is stated with one standard error more.
 Claim claim_of(std::string_view solver) {
   const bool is_measured = solver == "matrix" || solver == "hemicube" || solver == "hierarchical";
   return is_measured ? Claim::bound : Claim::estimate;
@@ -93,7 +93,7 @@ Status add_solver(const JudgedScene& s, std::string_view solver, double max_erro
   add(", RMS over mean", claim_of(solver), {e.stated, e.truth, e.truth_low, e.truth_high});
   if (e.stated_p95 > 0)
     add(", 95 % of texels err by less", Claim::bound, {e.stated_p95, e.true_p95});
-  // What was asked for is a statement, too, where nobody warns that it was not reached.
+  // The error asked for is a statement, too, where no warning says that it was not reached.
   if (max_error > 0 && e.stated_p95 <= max_error)
     add(", where it is reached", Claim::bound, {max_error, e.true_p95});
   if (!settings.denoise) return {};
@@ -134,7 +134,7 @@ Status add_probe(const JudgedScene& s, Accounts& accounts, Progress& progress) {
   return {};
 }
 
-/// Whether these rows are asked for: all, or those of one solver or command.
+/// True where these rows are asked for: all are, or those of this solver or command.
 bool is_asked_for(const StatedParams& params, std::string_view what) {
   return params.only.empty() || params.only == what;
 }

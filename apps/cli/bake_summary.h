@@ -1,4 +1,4 @@
-// What commands say that have baked.
+// The summary that commands print of a finished bake.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

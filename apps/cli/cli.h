@@ -1,4 +1,4 @@
-// What the commands of `luxel` share.
+// Declarations that the commands of `luxel` share.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -55,8 +55,8 @@ inline nlohmann::json point_json(DVec3 p) { return {p.x, p.y, p.z}; }
 int report(const Error& error, const Common& common);
 /// Wrong usage, said in the same two places. Returns kUsage.
 int report_usage(const std::string& message, const Common& common);
-/// What no ErrorCode stands for. `code` is its name in {"error": {"code": "internal", "exit_code":
-/// 1, "message": "..."}}. Returns `exit_code`.
+/// report() of a fault that no ErrorCode stands for. `code` is its name in {"error": {"code":
+/// "internal", "exit_code": 1, "message": "..."}}. Returns `exit_code`.
 int report(std::string_view code, int exit_code, const std::string& message, const Common& common);
 /// One line of JSON on stderr; docs/guide/ci.md lists the events.
 void print_event(const nlohmann::json& event);

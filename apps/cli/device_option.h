@@ -22,8 +22,8 @@ struct OpenDevice {
   ~OpenDevice();
 };
 
-/// What --device asks for, as gpu::parse_device() reads it; null: the processor. Where none is
-/// needed and none is there, a warning says why. Errors: no such device.
+/// Opens the device that --device asks for, read by gpu::parse_device(); null: the processor. If a
+/// device is optional and missing, a warning says why. Errors: no such device.
 Result<std::unique_ptr<OpenDevice>> open_device(const std::string& text, const Common& common);
 
 /// Adds --device. `does`: what the device does; the help goes on with how it is chosen.

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How something stands.
+/// Verdict on a part of the machine or of this build.
 enum class State : uint8_t {
   good,
   lacking,  ///< luxel works without it

@@ -1,4 +1,4 @@
-// What this program and this machine are.
+// Facts about this program and the machine that it runs on.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ const char* kind_of(VkPhysicalDeviceType type);
 std::string compiler();
 /// "AMD EPYC 7B13".
 std::string processor();
-/// What --version prints: luxel, compiler, libraries and devices, a line each.
+/// Output of --version: luxel, compiler, libraries and devices, a line each.
 std::string version_text();
 
 }  // namespace luxel::cli

@@ -50,7 +50,7 @@ std::string about_unknown_command(const CLI::App& app, const Arguments& argument
                      meant, meant.empty() ? ";" : "");
 }
 
-/// How messages are wanted, where the arguments make no sense as a whole.
+/// Message options of a command line that makes no sense as a whole.
 luxel::cli::Common messages_in(int argc, char** argv) {
   const auto has = [&](std::string_view flag) {
     return std::any_of(argv, argv + argc, [&](const char* argument) { return flag == argument; });
@@ -145,7 +145,7 @@ void keep_standard_streams() {
 constexpr const char* kNoMemory =
     "out of memory; lower --resolution or --samples, or set --max-memory";
 
-/// Whether an allocation has ever failed.
+/// True once an allocation has failed.
 std::atomic<bool>& memory_has_ended() {
   static constinit std::atomic<bool> has_ended{false};
   return has_ended;

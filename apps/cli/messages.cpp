@@ -1,4 +1,4 @@
-// What commands say on stderr, and as JSON on stdout.
+// Messages of commands on stderr, and as JSON on stdout.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -27,7 +27,7 @@ int exit_code(ErrorCode code) {
   }
 }
 
-/// What "code" in an error's JSON says.
+/// The value of "code" in an error's JSON.
 std::string_view name_of(ErrorCode code) {
   switch (code) {
     case ErrorCode::bad_input:

@@ -1,4 +1,4 @@
-// What the terminal behind stderr can do.
+// Abilities of the terminal behind stderr.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace luxel::cli {
 
-/// Whether a line can be written over: stderr is a terminal, and not a dumb one.
+/// True where a line can be written over: stderr is a terminal, and not a dumb one.
 bool rewrites_lines();
-/// Whether such a terminal is to show colours: NO_COLOR (no-color.org) is not set.
+/// True where such a terminal is to show colours: NO_COLOR (no-color.org) is not set.
 bool has_colours();
 
 enum class Colour : int { red = 31, yellow = 33 };

@@ -54,7 +54,7 @@ int run_together(const Common& common, int processes_per_node,
   if (!is_first)
     own.quiet = own.silent = true, own.json = own.progress_json = false, own.unsaid = &unsaid;
   const int code = joined->works ? run(own, joined->team.get()) : kDone;
-  // What went wrong before the work began, or after it; else the others know.
+  // Others do not know yet of an error before or after the work, unlike one within it.
   if (code != kDone && joined->team) joined->team->give_up({ErrorCode::io, unsaid});
   if (!is_first && code != kDone) say_when_nobody_does(*joined, unsaid);
   cluster::leave_processes(std::move(*joined), code != kDone);

@@ -191,7 +191,7 @@ bool stop_requested() {
   return sigtimedwait(&stop, nullptr, &patience) > 0;
 }
 
-/// How the work stands: the worker writes it, the watcher waits for it.
+/// State of the work: the worker writes it, the watcher waits for it.
 enum class Work { running, succeeded, failed };
 
 template <class Shown>

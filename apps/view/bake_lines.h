@@ -1,4 +1,4 @@
-// What the panel says of a bake that is being made.
+// The panel's lines about a bake that is being made.
 #pragma once
 
 #include "apps/view/bake_panel.h"

@@ -6,7 +6,7 @@
 
 namespace luxel::view_window {
 
-/// What the panel shows of a bake that is being made.
+/// Lines and buttons of a bake that is being made.
 struct BakeLines {
   std::string state;  ///< the stage, or how it ended
   float share = 0;    ///< of the stage that is done

@@ -1,4 +1,4 @@
-// What the panel shows of a scene that is edited, and what of it the user may change.
+// Panel of a scene that is edited, with the fields that the user may change.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace luxel::view_window {
 
-/// What can be chosen, by its name, and its number in the scene.
+/// An item to choose: its name, and its number in the scene.
 struct EditChoice {
   std::string name;
   int number = 0;

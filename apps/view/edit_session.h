@@ -32,10 +32,10 @@ EditSession begin_edits(std::shared_ptr<const view::ReadScene> read,
 EditPanel panel_of(const EditSession& session);
 /// Keys of its own, for F1.
 std::vector<KeyLine> edit_keys();
-/// What the user has changed in it. New lamps are bright at this exposure.
+/// Applies the user's changes in the panel. New lamps are bright at this exposure.
 void take_changes(const EditPanel& panel, float exposure, EditSession& session);
 
-/// What is drawn is another scene on the device, which needs the edits anew.
+/// The device now has another scene, which needs the edits anew.
 void has_another(EditSession& session);
 /// The scene and the frame follow the edits. Nothing may still draw the scene.
 void show_edits(const view::Walk& walk, view::ShownScene& shown, view::Frame& frame,
@@ -44,7 +44,7 @@ void show_edits(const view::Walk& walk, view::ShownScene& shown, view::Frame& fr
 /// Begins to write the edited scene into the output folder, in the background.
 void save_edited(EditSession& session);
 bool is_saving(const EditSession& session);
-/// What has come of it, and what of events could not be done; empty: nothing is to be told.
+/// News of saving, and of events that failed; empty: nothing is to be told.
 std::string news_of(EditSession& session);
 /// Returns when it is saved, with what is to be told. Errors: what could not be done.
 Result<std::string> end_edits(EditSession& session);

@@ -1,5 +1,4 @@
-// What the panel shows of hemicube radiosity, and what of it the user may change. Dear ImGui draws
-// it.
+// Panel of hemicube radiosity, with the fields that the user may change. Dear ImGui draws it.
 #pragma once
 
 #include <array>
@@ -9,7 +8,7 @@
 
 namespace luxel::view_window {
 
-/// What a hemicube of one size found at the element that is looked from.
+/// Results of a hemicube of one size at the element that is looked from.
 struct SizeLine {
   int pixels = 0;
   float sum_error = 0,

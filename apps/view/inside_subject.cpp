@@ -99,7 +99,7 @@ class InsideSubject : public Subject {
   }
 
  private:
-  /// What the desk asks of the workshop.
+  /// Sends the desk's requests to the workshop, and its exposure to the shown scene.
   void send() {
     if (desk_.exposure_stops && shown_.has_light) {
       const auto exposure = float(std::exp2(*desk_.exposure_stops));
@@ -164,7 +164,7 @@ class InsideSubject : public Subject {
   std::shared_ptr<const view::Piece> piece_;         ///< null: there is none yet
   std::shared_ptr<const view::ExactPicture> exact_;  ///< the newest, of whatever view
   std::optional<view::ExactView> last_view_, view_;  ///< of the last frame; of a camera at rest
-  // What lies on the device.
+  // Sources of the data that the device has now.
   std::shared_ptr<const view::Piece> put_piece_, put_over_;
   const hierarchical::LightMesh* put_mesh_ = nullptr;  ///< of put_piece_
   view::LightKind put_kind_ = view::LightKind::flat;

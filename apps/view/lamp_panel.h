@@ -1,4 +1,4 @@
-// What the panel shows of lamps, and what of them the user may change. Dear ImGui draws it.
+// Panel of lamps, with the fields that the user may change. Dear ImGui draws it.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct LampLine {
   friend bool operator==(const LampLine&, const LampLine&) = default;
 };
 
-/// What the light of a picture took, in the order of kStages [ms].
+/// Stages of a picture's light. StageTimes has a time for each, in this order [ms].
 inline constexpr const char* kStages[] = {"lamps at patches", "bounces",     "texels",
                                           "map to device",    "shadow maps", "picture"};
 using StageTimes = std::array<float, 6>;

@@ -26,9 +26,9 @@ struct LampSession {
 
 LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing);
 
-/// What the panel is to show.
+/// The panel that shows this session.
 LampPanel panel_of(const LampSession& session);
-/// What the user has changed in it. New lamps are bright at this exposure.
+/// Applies the user's changes in the panel. New lamps are bright at this exposure.
 void take_changes(const LampPanel& panel, float exposure, LampSession& session);
 
 /// Begins to compare the light with the path tracer's, or stops that.
@@ -38,7 +38,7 @@ bool take_check(LampSession& session);
 
 /// Begins to write an .lxr file with the lamps as they are, in the background, if none is.
 void begin_to_save_lxr(LampSession& session);
-/// What came of that, once: what is to be told. Errors: why it could not be written.
+/// Outcome of writing that file, once: a sentence to be told. Errors: why it could not be written.
 std::optional<Result<std::string>> take_saved(LampSession& session);
 
 /// Light follows the lamps where they have changed, and maps of shadows the walk. Returns what it

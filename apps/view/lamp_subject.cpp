@@ -88,7 +88,7 @@ class LampSubject : public Subject {
                            view::script_of(lamps_.desk.lamps, lamps_.opened.lamps, walk),
                            lamps_.opened.read->scene.origin));
   }
-  /// Whether another .lxr file was written, or could not be.
+  /// Notes the outcome once another .lxr file was written, or could not be.
   void has_saved() {
     const std::optional<Result<std::string>> saved = take_saved(lamps_);
     if (saved) note(*saved);

@@ -38,7 +38,7 @@ class LiveSubject : public Subject {
     out.push_back({"l", "edit the scene again"});
     return out;
   }
-  /// What a play names is looked for when it comes: there is no scene yet.
+  /// Names in a play are looked up when their events come: there is no scene yet.
   Status check(const view::Play& play, const std::string& name) const override {
     return view::check_no_inside(play, name);
   }
@@ -124,7 +124,7 @@ class LiveSubject : public Subject {
   Result<std::string> end() override {
     LUXEL_TRY_STATUS(wait_for_relight(relight_));
     std::vector<std::string> said;
-    // What rests or is stopped does not end.
+    // A bake that rests or is stopped does not end.
     if (live_->state() != view::LiveState::paused) {
       live_->wait();
       said.push_back(live_->take().said.value_or(""));

@@ -29,19 +29,19 @@ struct Looking {
 
 /// Makes what a frame needs, once, and puts its layers into the scene. The panel's lines of layers
 /// need them, too. Takes about a second for a million triangles. Nothing may still draw the scene.
-/// What a bake has not is said in an error, after which the frame shows what it can.
+/// Errors name data that the bake lacks; the frame shows the rest afterwards.
 Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool needs_layers,
                     view::Frame& frame, view::ShownScene& shown, Looking& looking);
 
-/// What a picture of a scene that is looked into is drawn with and of. `additions` may be null.
+/// Canvas for a picture of a scene that is looked into. `additions` may be null.
 view::Canvas canvas_of(const view::Shaders& shaders, const view::Painter& painter,
                        const view::DeviceScene& scene, const Looking& looking,
                        const view::Additions* additions = nullptr);
 
-/// What the panel says of a frame. `pointed`: the surface under the pointer.
+/// Describes a frame in the panel. `pointed`: the surface under the pointer.
 void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel);
-/// What the user has changed in it, since `before`.
+/// Applies the user's changes in the panel since `before`.
 void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame);
 
 }  // namespace luxel::view_window

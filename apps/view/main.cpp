@@ -195,7 +195,7 @@ std::vector<std::filesystem::path> models_of(const Options& options) {
   return out;
 }
 
-/// What is to be shown.
+/// A subject to show, perhaps with a second bake beside it.
 struct Opened {
   view_window::MakeSubject make;
   std::optional<view::OpenedBake> beside;
@@ -231,7 +231,7 @@ Result<Opened> opened(const Options& options) {
   return out;
 }
 
-/// What takes the place of what is shown: a scene is baked with the same options.
+/// The subject that replaces the shown one. A scene is baked with the same options.
 Result<view_window::MakeSubject> opened_later(const Options& options,
                                               const std::filesystem::path& path) {
   Options other = options;

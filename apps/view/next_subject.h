@@ -27,7 +27,7 @@ Result<std::unique_ptr<Subject>> take_next(gpu::Commands& commands, NextSubject&
 
 /// An absolute path without detours, as what is remembered is named.
 std::string full_path(const std::filesystem::path& path);
-/// What a window of it is called.
+/// Title of a window that shows this path.
 std::string title_of(const std::filesystem::path& path);
 
 }  // namespace luxel::view_window

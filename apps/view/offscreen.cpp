@@ -20,7 +20,7 @@ Status finish_work(gpu::Commands& commands, view::Walk* walk, Subject& subject) 
     if (subject.work() == Work::failed) return fail(ErrorCode::bad_input, "{}", message);
     LUXEL_TRY_STATUS(pass_light(view::kFade_s, commands, walk, subject));
     if (!is_at_work(subject)) return {};
-    // What is looked at is asked for.
+    // Making a frame asks the background for the light that it shows.
     if (walk) LUXEL_TRY_STATUS(frame_of(commands, *walk, subject).map([](const view::Frame&) {}));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -61,7 +61,7 @@ Status play_all(const view::Play& play, gpu::Commands& commands, view::Walk& wal
   }
 }
 
-/// What pictures are drawn with.
+/// Shaders, painter and data that pictures are drawn with.
 struct Easel {
   view::Shaders shaders;
   view::Painter painter;

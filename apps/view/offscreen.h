@@ -20,9 +20,8 @@ struct OffscreenParams {
 /// Gets a picture, 3 channels, and its number in a turn; 0 where there is but one.
 using TakePicture = std::function<Status(int number, const image::Image8&)>;
 
-/// What a subject shows once its work is done, with a second bake `beside` it if there is one.
-/// Errors: why there is nothing to see; a play of something else; no memory on the device; those of
-/// `take`.
+/// Draws a subject once its work is done, with a second bake `beside` it if there is one. Errors:
+/// why there is nothing to see; a play of something else; no memory on the device; those of `take`.
 Status draw_offscreen(gpu::Commands& commands, Subject& subject,
                       std::optional<view::OpenedBake> beside, const OffscreenParams& params,
                       const TakePicture& take);

@@ -1,5 +1,4 @@
-// What the panel shows, and what of it the user may change. It knows nothing of luxel: ui.h says
-// why.
+// The panel, with the fields that the user may change. It knows nothing of luxel: ui.h says why.
 #pragma once
 
 #include <array>
@@ -32,7 +31,7 @@ struct PanelLayout {
   std::vector<uint32_t> open, closed;
 };
 
-/// What the panel shows, and what of it the user may change.
+/// Fields of the panel. The user may change those that say so.
 struct Panel {
   std::string title;       ///< of the scene
   std::string about;       ///< a line under it

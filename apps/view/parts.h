@@ -12,9 +12,9 @@ namespace luxel::view_window {
 Status prepare_parts(gpu::Commands& commands, view::Frame& frame, view::ShownScene& shown,
                      Looking& looking);
 
-/// What the panel says of a frame.
+/// Describes a frame in the panel.
 PartsPanel parts_panel(const view::Frame& frame, const view::ShownScene& shown);
-/// What the user has changed in it, since `before`.
+/// Applies the user's changes in the panel since `before`.
 void take_parts(const PartsPanel& panel, const PartsPanel& before, view::Frame& frame);
 
 }  // namespace luxel::view_window

@@ -6,7 +6,7 @@
 
 namespace luxel::view_window {
 
-/// What the panel shows of it.
+/// Lines and the button of this preparation.
 struct RelightLines {
   std::string stage;  ///< of what goes on; empty: nothing does
   float share = 0;    ///< of the stage that is done

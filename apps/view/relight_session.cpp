@@ -22,7 +22,7 @@ void wake(const RelitLive& live) {
   if (live.bake.state() != view::LiveState::baked) live.bake.edit(live.desk.now);
 }
 
-/// What is stopped ends within some tenths of a second, and the window does not wait for it.
+/// A stopped preparation ends within some tenths of a second. The window does not wait for it.
 void stop(const RelitLive& live, RelightSession& session) {
   session.ending =
       std::async(std::launch::async,

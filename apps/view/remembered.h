@@ -26,7 +26,7 @@ Remembered recall(const std::filesystem::path& file, const std::string& subject)
 /// Where a walk that has just begun goes on.
 void begin_as_left(const Remembered& remembered, view::Walk& walk);
 
-/// What a window leaves besides its walk.
+/// State that a window leaves besides its walk.
 struct WindowLeft {
   bool is_light = false;
   const PanelLayout& layout;
@@ -36,7 +36,7 @@ struct WindowLeft {
 /// Errors: those of files.
 Status keep(const Remembered& remembered, const view::Walk& walk, const WindowLeft& window);
 
-/// How large the last window was; none where none is known.
+/// Habits::window of the last window; none where none is known.
 std::optional<std::array<int, 2>> last_size(const std::filesystem::path& file);
 
 }  // namespace luxel::view_window

@@ -81,7 +81,7 @@ Result<Screen> open_screen(const Window& window, const std::string& device_name)
 
 namespace {
 
-/// What is drawn of a frame before the panel; of two scenes, what is not drawn yet.
+/// Records the drawing of a frame before the panel. In flip mode the two scenes are drawn already.
 void record(const view::DeviceScene& scene, const view::Frame& frame, const Screen& screen,
             VkCommandBuffer commands) {
   const gpu::Device& device = *screen.device;

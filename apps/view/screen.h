@@ -1,4 +1,4 @@
-// What draws in a window: the device, the window's pictures and what is drawn into them.
+// Drawing in a window: the device, the window's pictures and what is drawn into them.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace luxel::view_window {
 
-/// What is made later ends first.
+/// Members stand in the order in which they are made, so that later ones end first.
 struct Screen {
   std::unique_ptr<gpu::Device> device;
   std::optional<gpu::Surface> surface;
@@ -47,7 +47,7 @@ Result<Screen> open_screen(const Window& window, const std::string& device_name)
 /// none, as when it is hidden.
 Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Screen& screen);
 
-/// What another scene is drawn with, in a window that is fitted. Nothing may still draw. Errors: no
+/// Prepares a window that is fitted to draw another scene. Nothing may still draw. Errors: no
 /// memory on the device.
 Status fit_scene(const view::DeviceScene& scene, Screen& screen);
 

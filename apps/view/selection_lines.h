@@ -12,10 +12,10 @@ namespace luxel::view_window {
 /// Tools while a window or a picture is made.
 struct SelectionSession {
   view::SelectionDesk desk;
-  /// What they are used on; null: there is no solution yet.
+  /// The solution that they are used on; null: there is none yet.
   std::optional<view::Examined> examined;
   std::string unit;  ///< of E
-  // What `examined` was made of.
+  // Sources of `examined`.
   std::shared_ptr<const view::Piece> piece;
   const hierarchical::LightMesh* mesh = nullptr;
   view::LightKind kind = view::LightKind::flat;
@@ -34,7 +34,7 @@ bool take_selection(const view::Event& event, const view::Walk& walk, SelectionS
 void add_selection_keys(std::vector<KeyLine>& keys);
 
 SelectionPanel selection_lines(const SelectionSession& session);
-/// What the user has changed in it.
+/// Applies the user's changes in the panel.
 void take_selection_lines(const SelectionPanel& panel, const view::Walk& walk,
                           SelectionSession& session);
 

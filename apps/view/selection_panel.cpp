@@ -124,7 +124,7 @@ void fill_polygon(const TileFit& fit, const FlatPolygon& polygon, ImU32 color) {
     ImGui::GetWindowDrawList()->AddConvexPolyFilled(points.data(), int(points.size()), color);
 }
 
-/// What is seen white, what is hidden violet, what lies under the horizon grey.
+/// Seen parts are white, hidden ones violet, parts under the horizon grey.
 void lay_out_source(const SourcePicture& source) {
   const float size = ImGui::GetFontSize();
   const ImVec2 from = ImGui::GetCursorScreenPos(), extent{size * 12, size * 6};

@@ -1,5 +1,5 @@
-// What the panel shows of what is selected and probed in a hierarchical solution, and what of it
-// the user may change. Dear ImGui draws it.
+// Panel of selected and probed parts of a hierarchical solution, with the fields that the user may
+// change. Dear ImGui draws it.
 #pragma once
 
 #include <array>

@@ -40,7 +40,7 @@ std::optional<scene::SurfacePoint> pointed_surface(const Ui& ui, const view::Rea
                             walk.height);
 }
 
-/// What the panel changes of a walk, and the walk of the panel.
+/// Shows the walk in the panel, and applies the user's changes there to the walk.
 void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, float flip,
               Panel& panel, view::Walk& walk) {
   panel.show = int(walk.shown.show);
@@ -172,14 +172,14 @@ void take(const view::Event& event, Session& s) {
   if (!s.subject->take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
 }
 
-/// What the frame shows of the bake is made where it is not there yet; or it is said why not.
+/// Makes missing data that the frame shows of the bake; a message says why it cannot.
 void look(Session& s) {
   const Status done =
       prepare_look(*s.screen.commands, s.screen.shaders.overlay, s.panel.look.asks_for_layers,
                    s.walk->shown, s.subject->shown(), s.screen.looking);
   if (!done) s.panel.message = done.error().message;
   if (!s.screen.beside) return;
-  // What the second bake has not is not shown of it: the first one's panel says what is.
+  // Data that the second bake lacks are left out of its picture; the panel follows the first bake.
   view::Frame frame = s.walk->shown;
   const Status beside = prepare_look(*s.screen.commands, s.screen.shaders.overlay, false, frame,
                                      *s.screen.beside, s.screen.looking_beside);
@@ -201,7 +201,7 @@ void lay_out(Session& s) {
   for (const view::Command command : std::exchange(s.walk->asked, {})) s.subject->obey(command);
 }
 
-/// What is drawn; before there is a scene, nothing.
+/// The frame to draw; before there is a scene, an empty one.
 Result<view::Frame> frame_of(Session& s) {
   if (s.walk) return frame_of(*s.screen.commands, *s.walk, *s.subject);
   view::Frame nothing;
@@ -252,7 +252,7 @@ Status draw_frame(Session& s) {
   return write_screenshot(shown.device, frame, s.screen, s.panel.message);
 }
 
-/// How long a window sleeps in which nothing moves [s]. What the background brings is seen then.
+/// Longest sleep of a window in which nothing moves [s]. It sees the background's news afterwards.
 constexpr double kSleep_s = 0.1, kSleepAtWork_s = 0.01;
 
 /// One frame of the window. False when a play has come to its end.

@@ -24,7 +24,7 @@ Panel panel_for(const Session& s) {
   return out;
 }
 
-/// What has been opened takes the place of what was shown.
+/// A newly opened subject takes the place of the shown one.
 Status show_next(std::unique_ptr<Subject> subject, const std::filesystem::path& path, Session& s) {
   if (const Status kept = keep_habits(s); !kept) s.remembered.message = kept.error().message;
   const bool is_same = full_path(path) == s.path;

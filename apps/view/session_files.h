@@ -5,10 +5,10 @@
 
 namespace luxel::view_window {
 
-/// Begins to open another file or folder in the place of what is shown, or the same one again. What
-/// is wrong with it is told, and what was shown stays.
+/// Begins to open another file or folder in the place of the shown one, or the same one again. If
+/// that fails, the panel says why, and the shown one stays.
 void open_in_window(const std::filesystem::path& path, Session& s);
-/// Whether another file is being opened.
+/// True while another file is being opened.
 bool is_opening(const Session& s);
 
 /// Files that were dropped on the window; what has been opened takes the place of what is shown;

@@ -1,4 +1,4 @@
-// What the panel shows of hierarchical radiosity.
+// The panel's lines about hierarchical radiosity.
 #pragma once
 
 #include "apps/view/solver_panel.h"
@@ -9,7 +9,7 @@ namespace luxel::view_window {
 /// `piece` is null before there is one, `exact` while no pixel is exact.
 SolverPanel solver_lines(const view::Workshop& workshop, const view::Piece* piece,
                          const view::ExactPicture* exact, const view::HierarchicalDesk& desk);
-/// What the user has changed in it.
+/// Applies the user's changes in the panel.
 void take_solver_lines(const SolverPanel& panel, const view::Piece* piece,
                        view::HierarchicalDesk& desk);
 

@@ -1,5 +1,4 @@
-// What the panel shows of a solver that is looked into, and what of it the user may change. Dear
-// ImGui draws it.
+// Panel of a solver that is looked into, and fields that the user may change. Dear ImGui draws it.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What is shown, and what a user does with it besides walking about: a bake, one that is being
-// made, lamps that move, a solver that is looked into.
+// Subjects that are shown, and the user's actions on them besides walking about: a bake, one that
+// is being made, lamps that move, a solver that is looked into.
 #pragma once
 
 #include <filesystem>
@@ -18,14 +18,14 @@
 
 namespace luxel::view_window {
 
-/// What has come from the background.
+/// News from the background.
 struct Followed {
   bool has_news = false;    ///< something is to be drawn
   bool has_scene = false;   ///< shown().read is another one
   bool is_another = false;  ///< shown().device is another one, which other things are drawn with
 };
 
-/// What the background does.
+/// State of the background.
 enum class Work : uint8_t { at_rest, at_work, failed };
 
 /// A window or a picture has one. All of its functions are called by one thread, while nothing
@@ -35,7 +35,7 @@ class Subject {
   virtual ~Subject() = default;
 
   virtual view::ShownScene& shown() = 0;
-  /// What is drawn besides or instead of its surfaces; null: nothing.
+  /// Additions drawn besides or instead of its surfaces; null: none.
   virtual const view::Additions* additions() const { return nullptr; }
   /// Keys of its own, for F1.
   virtual std::vector<KeyLine> keys() const { return {}; }
@@ -46,13 +46,13 @@ class Subject {
   /// on the device.
   virtual Result<Followed> follow(gpu::Commands&, std::string& /*message*/) { return Followed{}; }
   virtual Work work() const { return Work::at_rest; }
-  /// Whether its file is opened again at once when it has changed: nothing is lost by that, and who
-  /// looks is about to change it.
+  /// True: its file is opened again as soon as it changes. No work is lost by that, and the user is
+  /// at work on the file.
   virtual bool follows_its_file() const { return false; }
 
   /// The box around what is selected; empty: nothing is.
   virtual Box3 selected() const { return {}; }
-  /// Whether an event is no longer the walk's.
+  /// True: the subject takes the event, and the walk does not get it.
   virtual bool take(const view::Event&, const view::Walk&) { return false; }
   virtual void obey(view::Command) {}
   /// Its part of the panel, and what the user has changed there. The walk is null until shown()
@@ -65,9 +65,9 @@ class Subject {
   virtual Status prepare(gpu::Commands&, const view::Walk&, view::Frame&) { return {}; }
   /// A frame in the window took so long.
   virtual void has_drawn(float /*milliseconds*/) {}
-  /// How many edits of the scene are drawn.
+  /// Number of edits that the drawn scene has.
   virtual uint64_t edits() const { return 0; }
-  /// What the light of the last frame took.
+  /// Times of the stages of the last frame's light.
   virtual view::LightTimes light_times() const { return {}; }
 
   /// After a play: returns when all that it asked for is done, with what is to be told. Errors:
@@ -78,14 +78,14 @@ class Subject {
 /// Makes a subject that lies on a device.
 using MakeSubject = std::function<Result<std::unique_ptr<Subject>>(gpu::Commands&)>;
 
-/// What lies at a path, to be shown. Errors: those of files; it is nothing that can be shown.
+/// Opens a path to show it. Errors: those of files; there is nothing that can be shown.
 using OpenSubject = std::function<Result<MakeSubject>(const std::filesystem::path&)>;
 
 /// Nothing, until a file is dropped on the window.
 MakeSubject no_subject();
 /// A bake that is there.
 MakeSubject baked_subject(view::OpenedBake bake);
-/// What becomes of a scene when its lamps are to move with all bounces.
+/// Preparation of a scene whose lamps are to move with all bounces.
 struct RelightParams {
   pipeline::RelightSettings settings;
   bool begins = false;  ///< as soon as the scene is read; else when it is asked for
@@ -101,12 +101,12 @@ MakeSubject inside_subject(const pipeline::BakeSettings& settings);
 /// An .lxr file, whose lamps move.
 MakeSubject lamp_subject(view::OpenedLxr opened);
 
-/// What is drawn of a subject: without light, colours.
+/// The frame to draw of a subject: colours alone where it has no light.
 Result<view::Frame> frame_of(gpu::Commands& commands, const view::Walk& walk, Subject& subject);
 /// Light fades in; the exposure goes with it, by as many stops as the user has chosen. `walk` may
 /// be null. Errors: no memory on the device.
 Status pass_light(double seconds, gpu::Commands& commands, view::Walk* walk, Subject& subject);
-/// Whether anything may still come that a play waits for.
+/// True while something may still come that a play waits for.
 bool is_at_work(Subject& subject);
 
 }  // namespace luxel::view_window

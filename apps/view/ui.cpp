@@ -217,7 +217,7 @@ class ImGuiUi : public Ui {
     return end_panel(panel);
   }
 
-  /// What every panel ends with. Returns where its right edge is.
+  /// Lays out the last lines of every panel. Returns the place of its right edge.
   static float end_panel(Panel& panel) {
     if (!panel.message.empty()) lay_out_wrapped(panel.message);
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;

@@ -14,7 +14,7 @@ struct GLFWwindow;
 
 namespace luxel::view_window {
 
-/// What of the device the panel is drawn with.
+/// Vulkan objects that the panel is drawn with.
 struct UiDevice {
   VkInstance instance;
   VkPhysicalDevice physical;
@@ -32,7 +32,7 @@ class Ui {
   /// The window's pictures, again when they have changed. Nothing may still draw into the earlier.
   virtual bool set_pictures(std::span<const VkImageView> views, uint32_t width,
                             uint32_t height) = 0;
-  /// Whether the pointer or the keyboard are the panel's.
+  /// True while the panel has the pointer, or the keyboard.
   virtual bool has_pointer() const = 0;
   virtual bool has_keys() const = 0;
   /// Lays out a frame.

@@ -95,7 +95,7 @@ void lay_out_layers(LookPanel& look) {
     for (LayerLine& line : look.layers) line = {line.layer, line.words, 1, {1, 1, 1}};
 }
 
-/// How many pixels are how bright; the line is what the exposure brings to white.
+/// Pixels by their luminance; the line marks the luminance that the exposure brings to white.
 void lay_out_histogram(LookPanel& look) {
   look.asks_for_histogram = ImGui::CollapsingHeader("histogram of luminance");
   if (!look.asks_for_histogram || look.histogram.empty()) return;

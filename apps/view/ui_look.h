@@ -16,7 +16,7 @@ struct LayerLine {
   float color[3] = {};  ///< changed: linear
 };
 
-/// What the panel says of what is shown of a bake, and what of it the user may change.
+/// Fields for looking into a bake. The user may change those that say so.
 struct LookPanel {
   std::span<const char* const> kinds;     ///< what can be shown of a bake
   int kind = -1;                          ///< changed: -1 none of them

@@ -7,7 +7,7 @@
 
 namespace luxel::view_window {
 
-/// What of the light is shown; what the user may change of it.
+/// The parts of light that are shown. The user may change the fields that say so.
 struct PartsPanel {
   bool has_parts = false;              ///< light can be told apart here
   std::span<const char* const> parts;  ///< those that have a name

@@ -25,9 +25,9 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   GLFWwindow* get() const { return window_; }
-  /// What the user did since the last call.
+  /// The user's events since the last call.
   std::vector<view::Event> taken() { return std::exchange(events_, {}); }
-  /// Whether something has happened since the last call that may change the picture.
+  /// Something has happened since the last call that may change the picture.
   bool has_changed() { return std::exchange(has_changed_, false) || !events_.empty(); }
   /// Files that were dropped on the window since the last call.
   std::vector<std::filesystem::path> dropped() { return std::exchange(dropped_, {}); }

@@ -1,4 +1,4 @@
-// How far pictures and bakes are from each other: `luxel compare`.
+// Differences between pictures or bakes: `luxel compare`.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

@@ -9,7 +9,7 @@
 namespace luxel::python {
 namespace {
 
-/// What `luxel factors` is given.
+/// Arguments of `luxel factors`.
 struct Wanted {
   std::string method;
   std::optional<double> tolerance;

@@ -16,7 +16,7 @@ namespace luxel::python {
 /// named in messages. Raises TypeError for what is no option, and ValueError for values.
 void parse(CLI::App& command, const py::kwargs& options, const std::string& function);
 
-/// What make_stub.py writes about options: name, type, help and default of each.
+/// An option as make_stub.py writes it: name, type, help and default.
 struct Described {
   std::string name, type, help, default_text;
 };

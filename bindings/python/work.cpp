@@ -16,7 +16,7 @@ PyObject*& error_class() {
   return made;
 }
 
-/// What runs in any thread of this interpreter.
+/// All work that runs in any thread of this interpreter.
 struct AllWork {
   std::mutex mutex;
   std::condition_variable is_less;

@@ -1,4 +1,4 @@
-// How a program relights a scene: a lamp goes round in it, and all bounces follow.
+// A program that relights a scene: a lamp goes round in it, and all bounces follow.
 //
 //     luxel relight scenes/cornell-box.glb -o box.lxr
 //     relight_example box.lxr 100
@@ -16,7 +16,7 @@
 
 using namespace luxel;
 
-/// What is wrong with a file is said in a sentence.
+/// Errors say in a sentence why the file cannot be used.
 static Result<matrix::Relighter> open_lxr(const char* path) {
   LUXEL_TRY(matrix::RelightData data, matrix::read_lxr(path));
   return matrix::Relighter::make(std::move(data), {});

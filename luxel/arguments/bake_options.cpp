@@ -11,7 +11,7 @@
 namespace luxel::arguments {
 namespace {
 
-/// What one option says must not be said by another that was given, too.
+/// Refuses --resolution with a density, which contradict each other unless pages are automatic.
 Status check_resolution(const Given& given, const pipeline::BakeSettings& s) {
   const bool both = given.has("--resolution") && s.texels_per_metre > 0;
   if (!both || s.pages.mode == atlas::PageMode::automatic) return {};
@@ -21,7 +21,7 @@ Status check_resolution(const Given& given, const pipeline::BakeSettings& s) {
               s.resolution.value_or(0), s.texels_per_metre);
 }
 
-/// What each solver that looks at a flag makes of it.
+/// A flag's meaning for each solver that looks at it.
 std::string help_of(const std::string& flag) {
   std::vector<const pipeline::Option<pipeline::BakeSettings>*> rows;
   for (const auto& row : pipeline::bake_options())
@@ -68,7 +68,7 @@ void add_bake_table(CLI::App& bake, Given& given) {
 
 Result<pipeline::BakeSettings> settings_of(const BakeChoice& options) {
   pipeline::BakeSettings s;
-  // What an option file has came in as arguments.
+  // Options of an option file came in as arguments.
   const bool reads_bake = !options.settings.empty() && !is_option_file(options.settings);
   if (reads_bake) LUXEL_TRY_STATUS(pipeline::read_settings(options.settings, s));
   if (options.given.has("--ies")) s.outside.ies.clear();  // those given win

@@ -11,7 +11,7 @@
 
 namespace luxel::arguments {
 
-/// What the user gave.
+/// The user's choices for a bake.
 struct BakeChoice {
   std::filesystem::path scene, output, settings;
   std::string solver;

@@ -1,4 +1,4 @@
-// What a user may have meant by a name that is not there.
+// Guesses at the name that a user meant by one that is not there.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -8,8 +8,8 @@
 
 namespace luxel::arguments {
 
-/// How many letters must be inserted, left out, replaced, or exchanged with the next one to make
-/// one text of the other, at least: the optimal string alignment distance [Damerau64].
+/// Fewest letters to insert, leave out, replace, or exchange with the next one to make one text of
+/// the other: the optimal string alignment distance [Damerau64].
 size_t edits_between(std::string_view a, std::string_view b);
 
 /// The name that differs from `word` by the fewest letters, or begins with all of it; the first of

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 14> kNotForFiles{
     "help", "output", "settings", "json", "progress-json", "quiet",  "from",
     "play", "script", "report",   "plan", "part",          "resume", "devices"};
-/// What a stranger's file does not say: whom to trust, and what of this machine to use.
+/// Options that a stranger's file may not set: trust, and use of this machine.
 constexpr std::array<std::string_view, 6> kOnlyWhenNamed{
     "trust-paths", "any-format", "max-memory", "threads", "processes-per-node", "device"};
 /// If the command line gives the first, the file's second is left out.
@@ -89,7 +89,7 @@ bool is_given(const CLI::App& command, std::string_view flag) {
   return option && option->count() > 0;
 }
 
-/// Whether the command was given an option, or one that contradicts it.
+/// The command was given this option, or one that contradicts it.
 bool gives_way(const CLI::App& command, const CLI::Option& option) {
   if (option.count() > 0) return true;
   for (const CLI::Option* other : option.get_excludes())
@@ -99,7 +99,7 @@ bool gives_way(const CLI::App& command, const CLI::Option& option) {
   });
 }
 
-/// Whether a solver that the command line names looks at an option of the file.
+/// False: the command line names a solver that does not look at this option of bakes.
 bool is_looked_at(const CLI::App& command, std::string_view flag) {
   if (!is_given(command, "--solver")) return true;
   const pipeline::Solver* solver =

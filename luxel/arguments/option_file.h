@@ -13,17 +13,17 @@
 namespace luxel::arguments {
 
 inline constexpr std::string_view kOptionFileName = "luxel.toml";
-/// What --settings says when no file is to be read, not even luxel.toml.
+/// The value of --settings for which no file is read, not even luxel.toml.
 inline constexpr std::string_view kNoOptionFile = "none";
 
 struct OptionFile {
   std::filesystem::path path;
-  /// By --settings. What merely lies beside a scene may come from a stranger: it cannot name files
-  /// outside of its folder, nor allow the scene to, and says nothing about this machine.
+  /// By --settings. A file that merely lies beside a scene may come from a stranger: it cannot name
+  /// files outside of its folder, nor allow the scene to, and sets nothing about this machine.
   bool is_named = false;
 };
 
-/// Whether --settings names a file of options, or none, rather than a bake.json.
+/// True: --settings names a file of options, or none, rather than a bake.json.
 bool is_option_file(const std::filesystem::path& settings);
 
 /// The file of options of a command that was parsed: that of its --settings; without --settings the

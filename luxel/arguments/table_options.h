@@ -10,7 +10,7 @@
 
 namespace luxel::arguments {
 
-/// What the user gave of a table's options, as text, in any order. It is read when the command
+/// Options of a table that the user gave, as text, in any order. They are read when the command
 /// runs.
 struct Given {
   std::vector<std::pair<std::string, std::string>> values;  ///< flag and text; switches have ""
@@ -49,7 +49,7 @@ Status read_given(const Given& given, const pipeline::Options<S>& table, S& sett
   return {};
 }
 
-/// What rows exclude one another, when all of a command's options are there.
+/// Lets a row's option exclude those of its `not_with`, which the command must have by now.
 void exclude_each_other(CLI::App& command, const pipeline::OptionText& row);
 
 }  // namespace luxel::arguments

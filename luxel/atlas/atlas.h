@@ -59,10 +59,10 @@ struct TexelMap {
 
 /// The use of TEXCOORD_1 for the lightmap: where it is a layout (why_no_layout), always, never.
 enum class UvMode : uint8_t { automatic, keep, unwrap };
-/// How many pages: so many; as many as it takes; one for each instance.
+/// Number of pages: a given one; as many as it takes; one for each instance.
 enum class PageMode : uint8_t { fixed, automatic, per_instance };
 
-/// How a scene is laid out.
+/// Settings for laying out a scene.
 struct AtlasParams {
   UvMode uv = UvMode::automatic;  ///< automatic: keep when TEXCOORD_1 is valid, else unwrap
   /// Side of a page in texels, 1 .. 16384; per instance: of the largest. With a density only
@@ -78,7 +78,7 @@ struct AtlasParams {
   int pages = 1;  ///< fixed: how many; more than one with a resolution only
 };
 
-/// What the layout is like; printed by `luxel bench atlas` and `luxel info`.
+/// Measures of a layout; printed by `luxel bench atlas` and `luxel info`.
 struct AtlasStats {
   uint32_t charts = 0;
   double utilisation = 0;       ///< covered texels / all texels of all pages

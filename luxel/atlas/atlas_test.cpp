@@ -39,7 +39,7 @@ Error error_of(const scene::Scene& scene, const AtlasParams& params) {
   return atlas ? Error{} : atlas.error();
 }
 
-/// Whether p lies in the triangle, with a margin; by barycentric coordinates.
+/// True where p lies in the triangle, with a margin; by barycentric coordinates.
 bool inside(const std::array<Vec2, 3>& t, double x, double y, double margin) {
   const double ax = t[0].x, ay = t[0].y;
   const double bx = t[1].x - ax, by = t[1].y - ay, cx = t[2].x - ax, cy = t[2].y - ay;

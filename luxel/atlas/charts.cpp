@@ -110,15 +110,15 @@ struct Cluster {
   double area = 0, perimeter = 0;
   std::vector<DVec3> normals;   ///< of its patches, those in the midst of others left out
   std::vector<Border> borders;  ///< sorted by `other`
-  /// What it may merge with, found when it last changed: a heap with the cheapest on top.
+  /// Clusters that it may merge with, found when it last changed: a heap with the cheapest on top.
   std::vector<Candidate> candidates;
   std::vector<uint32_t> patches;
   size_t most_normals = kManyNormals;  ///< with more, some are left out
 };
 
 /// Leaves out normals that lie between others, as seen along the axis, from which all are less than
-/// a right angle away. Who is within an angle of some direction that is less than a right angle has
-/// all between them within it, too: the outermost normals speak for all.
+/// a right angle away. A direction within such an angle of some normals is within that angle of all
+/// normals between them, too: the outermost normals speak for all.
 void keep_outermost(std::vector<DVec3>& normals, DVec3 axis) {
   // On the plane across the axis great circles are straight lines: the outermost normals are the
   // corners of the convex hull, made by Andrew's monotone chains.

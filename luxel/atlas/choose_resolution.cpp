@@ -12,8 +12,8 @@ namespace luxel::atlas {
 namespace {
 
 constexpr int kSmallestSide = 64;
-/// What charts with half their gutters fill of a page, between the 0.8 of a few large charts and
-/// the 1 of many small ones.
+/// Share of a page that charts fill with half their gutters, between the 0.8 of a few large charts
+/// and the 1 of many small ones.
 constexpr double kFilled = 0.9;
 /// The area of charts that may be narrower than others: what is in them is hardly seen.
 constexpr double kNarrowArea = 0.02;

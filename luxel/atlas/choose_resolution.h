@@ -1,4 +1,4 @@
-// How fine a scene's lightmap should be, by what there is to see on it.
+// Resolution of a scene's lightmap, chosen by the detail that there is to see.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ struct ChartSize {
   double length = 0, width = 0;
 };
 
-/// What decides how many texels a scene needs.
+/// Sizes that decide how many texels a scene needs.
 struct SceneDetail {
   double size_m = 0;              ///< diagonal of the bounds
   double area_m2 = 0;             ///< of all charts

@@ -48,8 +48,8 @@ TEST(ChooseResolution, NarrowPartsThatCountAskForMore) {
   EXPECT_NEAR(narrow_width_m(detail(needle)), 1, 1e-6);
 }
 
-/// What is expected of the packer is about what it does: advice leaves a fifth to spare
-/// (luxel/pipeline/texels/resolution.cpp). Charts that bend leave gaps in their rectangles.
+/// Densities may be off by a fifth, which advice leaves to spare
+/// (luxel/pipeline/texels/resolution.cpp): charts that bend leave gaps in their rectangles.
 TEST(ChooseResolution, ForeseesThePacker) {
   for (const scene::Scene& scene :
        {testing::mixed_scene(), testing::scene_of(testing::box({1, 2, 3})),

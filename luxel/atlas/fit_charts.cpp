@@ -19,7 +19,7 @@ double grid_unit(int resolution) {
   return std::ldexp(1.0, int(std::bit_width(unsigned(resolution))) - 23);
 }
 
-/// What could be placed at one density.
+/// Charts laid at one density, to be packed.
 struct Attempt {
   double density = 0;
   int page_side = 0, atlas_side = 0;

@@ -33,7 +33,7 @@ struct PageRoom {
   std::vector<uint32_t> instance{};  ///< per chart; with several pages, those of one keep together
 };
 
-/// Whether the squares have room for as many charts when each shrinks to a single texel.
+/// True where the squares have room for as many charts when each shrinks to a single texel.
 bool holds_charts(const PageRoom& room, size_t charts);
 
 /// The largest density on so many squares. first_guess > 0 is a density known to be nearly as large

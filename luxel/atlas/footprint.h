@@ -1,4 +1,4 @@
-// What a texel stands for: the part of it that its chart covers, as points of the surface.
+// Footprint of a texel: the part of it that its chart covers, as points of the surface.
 #pragma once
 
 #include <cstdint>

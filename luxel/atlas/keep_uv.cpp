@@ -10,7 +10,7 @@
 namespace luxel::atlas {
 namespace {
 
-/// What a user can find a drawn triangle by.
+/// Names by which a user can find a drawn triangle.
 std::string triangle_name(const scene::Scene& scene, const Atlas& atlas, uint32_t number) {
   const auto [instance, triangle] = scene::drawn_triangle(atlas.first_triangle, number);
   const scene::Instance& placed = scene.instances[instance];

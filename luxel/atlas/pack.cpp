@@ -56,7 +56,7 @@ struct Offer {
   std::array<int, 4> no_room_above{};  ///< per turn, as Sheet has it
 };
 
-/// What a place is judged by, less its row: the bottom, or where there is a choice of directions,
+/// Part of a shape whose row scores a place: the bottom, or where there is a choice of directions,
 /// the bulk.
 enum class Judge : uint8_t { bottom, bulk };
 
@@ -81,7 +81,7 @@ Offer best_turn(const Sheet& sheet, const Pieces& pieces, const Turns& turns, Ju
   return best;
 }
 
-/// What the search of one direction has shown.
+/// Notes the rows without room that the search of one direction has found.
 void remember(const Turns& turns, const Offer& offer, Sheet& sheet) {
   for (size_t t = 0; t < turns.count; ++t) {
     int& row = sheet.no_room_above[turns.mask[t]];

@@ -1,4 +1,4 @@
-// What is packed: the masks of all charts, each of the different ones once.
+// Pieces to pack: the masks of all charts, equal ones once.
 #pragma once
 
 #include <array>

@@ -80,7 +80,7 @@ struct Occupancy {
   size_t words;  ///< of a row
   std::vector<uint64_t> taken;
 
-  /// Whether a face holds a centre that is taken.
+  /// True where a face holds a centre that is taken.
   bool any_taken(const UvTriangle& t) const {
     return visit_words(t, [&](size_t at, uint64_t bits) { return (taken[at] & bits) != 0; });
   }
@@ -89,8 +89,8 @@ struct Occupancy {
   }
 
  private:
-  /// Visits the words with centres that a face holds, and which bits they are, until `visit` says
-  /// true; whether it did.
+  /// Visits the words with centres that a face holds, and the bits of these centres, until `visit`
+  /// returns true. Returns true where it did.
   template <class Visit>
   bool visit_words(const UvTriangle& t, const Visit& visit) const {
     const Span rows = touched_rows(t);

@@ -183,7 +183,7 @@ MappedVector<Texel> joined(std::vector<std::vector<Texel>> bands,
   return texels;
 }
 
-/// What of a texel does not follow from its triangle.
+/// A texel as it is sent: without data that follow from its triangle.
 struct SentTexel {
   uint16_t x = 0, row_in_band = 0;
   uint32_t triangle_number : 31 = 0;

@@ -14,7 +14,7 @@
 namespace luxel::atlas {
 namespace {
 
-/// What a triangle adds to the sums below.
+/// A triangle's contribution to the sums below.
 struct Measure {
   double area = 0, uv_area = 0;
   double stretch2 =
@@ -62,7 +62,7 @@ std::vector<uint32_t> numbers_of(std::span<const uint8_t> marked) {
   return all;
 }
 
-/// Whether the triangle touches a texel of its chart, and whether it owns one.
+/// `chart`: the triangle touches a texel of its chart. `own`: it owns a texel.
 struct Found {
   bool chart = false, own = false;
 };

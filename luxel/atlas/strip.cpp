@@ -39,7 +39,7 @@ Span longest_clear_run(std::span<const uint64_t> bits) {
     const int at = int(64 * w);
     end_at(at + std::countr_zero(word));
     begin = at + 64 - std::countl_zero(word);
-    // Whether a run within the word is longer.
+    // Looks for a longer run within the word.
     uint64_t begins = ~word;  // where at least `have` clear bits begin
     for (int have = 1; begins != 0 && have <= longest;) {
       const int step = std::min(have, longest + 1 - have);

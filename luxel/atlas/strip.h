@@ -14,8 +14,8 @@ namespace luxel::atlas {
 /// A mask's runs in the order of testing: those first that fail soonest.
 struct Shape {
   int width = 0, height = 0;
-  /// How far down it hangs on average: unlike its bottom, this sees that a shape whose bulk is
-  /// above leaves room for others beside its tip.
+  /// Mean row of its texels. Unlike its bottom, this shows that a shape whose bulk is above leaves
+  /// room for others beside its tip.
   double mean_row = 0;
   std::vector<RowRun> runs;
   /// The largest rectangle among the lengths of the rows' longest runs: each of these rows has a

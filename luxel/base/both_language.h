@@ -1,5 +1,5 @@
-// What lets one text be C++ and GLSL: formulas that the processor and a graphics device share stand
-// once, in files named both_*.h. In C++ they lie in luxel::both. The rules of such a text:
+// Macros by which one text is C++ and GLSL: formulas that the processor and a graphics device share
+// stand once, in files named both_*.h. In C++ they lie in luxel::both. The rules of such a text:
 // functions begin with BOTH. Types are uint, int, float, double, vec2 and vec3, made by vec2_of()
 // and vec3_of(). DOUBLE(x) is a number in double precision, and INOUT(type) a parameter that the
 // function changes. unit_or_zero() stands for normalize(), because GLSL's has no answer for the

@@ -1,4 +1,4 @@
-// How many bytes one entry of some arrays of a struct takes, for forecasts of memory.
+// Bytes of one entry of some arrays of a struct, for forecasts of memory.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 namespace luxel {
 namespace {
 
-// What the series leaves out, and some roundings of 6e-8 of numbers up to 1, up to pi.
+// Tolerances: terms that the series omit, and roundings of 6e-8 times 1 (points) or pi (angles).
 TEST(Circle, PointsAreThoseOfSineAndCosine) {
   RandomStream random{1};
   for (int k = 0; k < 100000; ++k) {

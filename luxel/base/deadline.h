@@ -20,7 +20,7 @@ class Deadline {
   Deadline(const Deadline&) = delete;
   Deadline& operator=(const Deadline&) = delete;
   ~Deadline();
-  /// Whether the time was over before the object's end. Thread-safe.
+  /// True: the time was over before the object's end. Thread-safe.
   bool passed() const { return passed_.load(); }
 
  private:

@@ -1,4 +1,4 @@
-// How far values are from those that they should be.
+// Differences of values from expected ones.
 #pragma once
 
 #include <cmath>

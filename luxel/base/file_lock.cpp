@@ -19,7 +19,7 @@ bool is_still_there(int file, const std::filesystem::path& path) {
 }
 
 Result<FileLock> FileLock::take(const std::filesystem::path& path, const std::string& what) {
-  // Whoever held it before may remove the file between open and lock.
+  // The process that held it before may remove the file between open and lock.
   for (int attempt = 0;; ++attempt) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (file < 0)

@@ -9,7 +9,7 @@
 namespace luxel {
 inline namespace base {
 
-/// Whether an open file or folder is still the one of that name.
+/// True while an open file or folder is still the one of that name.
 bool is_still_there(int file, const std::filesystem::path& path);
 
 /// Holds the lock of a name until it goes, or its process does. A file of that name stands for it

@@ -105,7 +105,7 @@ TEST_F(AtomicFiles, NoneAppearsWhenOneCannotBeWritten) {
   EXPECT_EQ(names(), (std::set<std::string>{"a"}));
 }
 
-// What a path without a name was once taken for: the name of every file that is no left-over.
+// An empty name once matched every file that is no left-over, and all of them were removed.
 TEST_F(AtomicFiles, APathWithoutANameIsAnErrorAndHarmsNothing) {
   std::ofstream(folder_ / "other") << "stays";
   EXPECT_FALSE(write_file_atomically(folder_ / "", bytes_of("new")));

@@ -13,8 +13,8 @@
 
 namespace luxel {
 
-/// What a limit of memory should leave to pages of such files: some threads look at so many between
-/// one look at what the process holds and the next.
+/// Memory that a limit should leave to pages of such files: some threads touch so much between two
+/// looks at the memory that the process holds.
 inline constexpr uint64_t kMappedPagesBytes = uint64_t(256) << 20;
 
 /// A folder for such files. Arrays that are gone over in order suit them; those of which entries

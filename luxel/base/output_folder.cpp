@@ -108,7 +108,7 @@ Status OutputFolder::lock() {
 }
 
 Status OutputFolder::hold(Progress& progress) {
-  // Whoever held the folder before may have removed it between make() and lock().
+  // The process that held the folder before may have removed it between make() and lock().
   for (int attempt = 0;; ++attempt) {
     LUXEL_TRY_STATUS(make());
     LUXEL_TRY_STATUS(lock());

@@ -36,8 +36,8 @@ class FlushDenormals {
 #endif
 };
 
-/// What ThreadSanitizer cannot see in a library that it does not know: all before a loop happens
-/// before every body of it, and every body before what follows. Bodies know nothing of each other.
+/// Tells ThreadSanitizer the order of loops in a library that it does not know: all before a loop
+/// happens before every body of it, and every body before what follows. Bodies are not ordered.
 class LoopOrder {
  public:
 #if defined(LUXEL_SANITIZE_THREADS)

@@ -83,7 +83,7 @@ std::string PartStore::failure() const {
   return happened ? note_of(*happened) : std::string();
 }
 
-/// Whoever comes first when it is time waits for the disk; the others go on.
+/// When it is time, the first thread to come waits for the disk; the others go on.
 void PartStore::flush_now_and_then() {
   Clock::rep due = flush_at_;
   const Clock::time_point now = Clock::now();

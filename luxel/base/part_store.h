@@ -27,9 +27,9 @@ struct PartShare {
 struct PartStoreParams {
   std::filesystem::path file;
   std::string header;  ///< of a file that is made
-  /// How the work can go on when it is stopped: Progress::way_on() once there is a file.
+  /// The way to go on with stopped work: Progress::way_on() once there is a file.
   std::string way_on;
-  /// What is finished earlier than this after `start` is not kept: short work writes nothing. So
+  /// Parts finished earlier than this after `start` are not kept: short work writes nothing. So
   /// often everything is flushed to the disk, too. 0: nothing is ever added.
   double interval_s = 30;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
@@ -51,17 +51,17 @@ class PartStore {
   PartStore(const PartStore&) = delete;
   PartStore& operator=(const PartStore&) = delete;
 
-  /// Whether keep() would keep a part now: without that it need not be put together.
+  /// True: keep() would keep a part now. Otherwise the part need not be put together.
   bool wants() const;
-  /// What all stages from now on depend on besides, as a digest: parts of others are not found.
+  /// Sets a digest of all else that later stages depend on: parts with another one are not found.
   void set_context(uint64_t context) { context_ = context; }
   /// Makes the file, which otherwise the first part to be kept does. Errors: it cannot be written.
   Status begin();
   /// Returns whether it was kept.
   bool keep(RecordKey part, std::span<const std::byte> bytes);
   std::optional<std::vector<std::byte>> find(RecordKey part) const;
-  /// Whether a part that was not found is left to others: it is not of the share, or what is made
-  /// of it could not be kept. Counts it.
+  /// True: a part that was not found is left to others, because it is not of the share, or because
+  /// its result could not be kept. Counts it.
   bool leaves(RecordKey part) const;
   uint64_t parts_left() const { return left_; }
   bool shares() const { return params_.share.has_value(); }
@@ -70,9 +70,9 @@ class PartStore {
 
   const std::filesystem::path& file() const { return params_.file; }
   bool has_failed() const { return failed_; }
-  /// What has happened; nothing: it has not.
+  /// The error on which has_failed() became true; none without one.
   std::optional<Error> error() const;
-  /// The note about that for work that goes on; empty: it has not.
+  /// The note about that error for work that goes on; empty without one.
   std::string failure() const;
   uint64_t parts_found() const { return found_; }
   uint64_t parts_kept() const { return kept_; }

@@ -1,4 +1,4 @@
-// How much memory the process has, had, and may have.
+// Memory that the process has, had, and may have.
 #pragma once
 
 #include <cstdint>

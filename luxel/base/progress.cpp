@@ -24,7 +24,7 @@ double seconds_left(const Expected& e) {
   const auto slow = [&](double taken, double expected) {
     return expected > 0 ? (taken + usual) / (expected + usual) : 1;
   };
-  // What is left of the running stage: by the plan so far, or by its own speed.
+  // Whole time of the running stage: by the plan so far, or by its own speed.
   const double by_plan = e.now * slow(e.past_taken, e.past);
   const double by_speed = e.now_share > 0 ? e.now_taken / e.now_share : by_plan;
   const bool both = by_plan > 0 && by_speed > 0;
@@ -133,7 +133,7 @@ double Progress::seconds_left_now(const Snapshot& s) const {
     e.past += expected_of_last(), e.past_taken += s.stage_seconds;
   } else if (!awaited_.name.empty()) {
     e.now = expected_of_last(), e.now_taken = s.stage_seconds;
-    // What was there already takes no time.
+    // Units that were there already take no time.
     const double total = double(s.total - s.skipped), done = double(s.done - s.skipped);
     if (total > 0) e.now_share = std::min(1.0, done / total);
   }

@@ -22,7 +22,7 @@ struct Stage {
   double seconds = 0;
 };
 
-/// How work goes against what was expected of it [s].
+/// Times of stages, expected and taken [s].
 struct Expected {
   double past = 0, past_taken = 0;  ///< of stages that have ended, and what they took
   double now = 0, now_taken = 0;    ///< of the running one
@@ -68,7 +68,7 @@ class Progress {
     cancelled_.store(true, std::memory_order_relaxed);
     set_paused(false);
   }
-  /// Whether the work was asked to stop. Returns only when the work may go on or is to end.
+  /// True: the work was asked to stop. Returns only when the work may go on or is to end.
   /// Thread-safe.
   bool cancelled() const {
     if (is_paused_.load(std::memory_order_relaxed)) wait_while_paused();
@@ -79,7 +79,7 @@ class Progress {
   /// True while it is held. Thread-safe.
   bool is_paused() const { return is_paused_.load(std::memory_order_relaxed); }
 
-  /// What a watcher sees: the running stage, its units and the time [s].
+  /// State as a watcher sees it: the running stage, its units and the time [s].
   struct Snapshot {
     std::string stage;
     uint64_t done = 0, total = 0;
@@ -102,11 +102,11 @@ class Progress {
   void note(std::string text);
   /// All from number `first` on.
   std::vector<std::string> notes(size_t first) const;
-  /// What can be said to someone who stops the work; empty: that it is lost. Thread-safe.
+  /// Sets the advice for someone who stops the work; empty: the work is lost. Thread-safe.
   void set_way_on(std::string text);
-  /// What set_way_on() was given last. Thread-safe.
+  /// The last text of set_way_on(). Thread-safe.
   std::string way_on() const;
-  /// What must be done by whoever ends the process while the work still runs; empty: nothing.
+  /// Sets the function to call before the process ends while the work still runs; empty: none.
   /// Thread-safe.
   void set_clean_up(std::function<void()> clean_up);
   /// Calls what set_clean_up() was given last, if anything. Thread-safe.

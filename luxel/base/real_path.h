@@ -17,7 +17,7 @@ inline std::filesystem::path real_path(const std::filesystem::path& path) {
   return failed ? std::filesystem::path() : real;
 }
 
-/// Whether `file`, a real_path(), lies below a folder, which may be any path.
+/// True where `file`, a real_path(), lies below a folder, which may be any path.
 inline bool lies_below(const std::filesystem::path& file, const std::filesystem::path& folder) {
   const std::filesystem::path real = real_path(folder);
   const auto [in_folder, in_file] =

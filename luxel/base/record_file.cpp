@@ -198,7 +198,7 @@ Status RecordFile::read_records(uint64_t file_bytes, Check check) {
   return {};
 }
 
-/// What is left of a record must not stand behind a shorter one.
+/// The rest of an unfinished record must not stand behind a shorter one.
 Status RecordFile::cut_off(uint64_t file_bytes) {
   if (end_ < file_bytes && ::ftruncate(file_, off_t(end_)) != 0)
     return io_error("write", path_, errno);
@@ -212,7 +212,7 @@ Status RecordFile::append(RecordKey key, std::span<const std::byte> bytes) {
   int error = write_at(file_, end_, bytes_of(start));
   if (error == 0) error = write_at(file_, end_ + sizeof(start), bytes);
   if (error != 0) {
-    // What cannot be cut off here is cut off when the file is opened.
+    // Bytes that cannot be cut off here are cut off when the file is opened.
     if (::ftruncate(file_, off_t(end_)) != 0) errno = 0;
     return io_error("write", path_, error);
   }

@@ -18,7 +18,7 @@
 namespace luxel {
 inline namespace base {
 
-/// What a record is of: a part of some stage of the work.
+/// Key of a record, which is a part of some stage of the work.
 struct RecordKey {
   uint64_t stage = 0, part = 0;
   friend auto operator<=>(const RecordKey&, const RecordKey&) = default;
@@ -60,7 +60,7 @@ class RecordFile {
   /// Adds a record; of two with the same key the later one counts. Thread-safe. Errors: the disk is
   /// full; what was there before stays readable.
   Status append(RecordKey key, std::span<const std::byte> bytes);
-  /// How many bytes a record has; nothing where there is none. Thread-safe.
+  /// Bytes of a record; nothing where there is none. Thread-safe.
   std::optional<uint64_t> size_of(RecordKey key) const;
   /// A record's bytes from `offset` on into `out`. False where there is no such record, it is
   /// shorter, or the disk fails. Thread-safe.

@@ -14,7 +14,7 @@
 namespace luxel {
 inline namespace base {
 
-/// What kind of failure it was.
+/// Kind of a failure.
 enum class ErrorCode {
   bad_input,      ///< a file's content is wrong
   unsupported,    ///< a file asks for something luxel does not know

@@ -11,7 +11,7 @@
 namespace luxel {
 inline namespace base {
 
-/// How a program ended, and what it wrote to its standard output and standard error.
+/// End of a program, and all that it wrote to its standard output and standard error.
 struct ProgramEnd {
   int status = 0;           ///< as waitpid() gives it
   bool was_killed = false;  ///< because its time was over

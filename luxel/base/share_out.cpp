@@ -57,7 +57,7 @@ class PieceQueue {
   uint64_t next_ = 0, end_ = 0;
 };
 
-/// What members do of a stage, as the first one's progress. Thread-safe.
+/// Adds the units that all members do of a stage to the first one's progress. Thread-safe.
 class DoneOfTeam {
  public:
   DoneOfTeam(Team& team, Progress& progress)

@@ -33,16 +33,16 @@ Result<std::vector<uint32_t>> share_out_in_turn(Team* team, size_t count, Progre
 Status do_own(Team* team, std::span<const uint32_t> own, Progress& progress,
               const std::function<void(size_t piece)>& work);
 
-/// What a member knows of a piece, and what it hears of the others' pieces.
+/// Functions that write a member's own pieces, and read the others' pieces.
 struct PieceExchange {
   size_t count = 0;  ///< of all pieces
   std::function<void(size_t piece, ByteWriter& out)> put;
   /// Returns whether `in` has what it should. `rank`: whose piece it is.
   std::function<bool(size_t piece, uint32_t rank, ByteReader& in)> take;
 };
-/// Gives what this member's `own` pieces are to all others, and takes theirs, in any order, one at
-/// a time. Nothing happens without a team. Errors: cancelled, another member gives up, what a
-/// member has sent does not end where it should.
+/// Gives the contents of this member's `own` pieces to all others, and takes theirs, in any order,
+/// one at a time. Nothing happens without a team. Errors: cancelled, another member gives up, data
+/// of a member do not end where they should.
 Status exchange(Team* team, std::span<const uint32_t> own, const PieceExchange& pieces,
                 Progress& progress);
 
@@ -126,7 +126,7 @@ requires std::is_trivially_copyable_v<T> Result<T> first_of(Team* team, T value,
 /// The sum of a number over all members. Errors: cancelled, another member gives up.
 Result<uint64_t> sum_of_members(Team* team, uint64_t own, Progress& progress);
 
-/// Whether this is a team's first member, or works alone.
+/// True for a team's first member, and for a process that works alone.
 bool is_first(const Team* team);
 /// Errors (parts_missing): this is a team's member, and not its first, who does the rest.
 Status leave_rest_to_first(const Team* team);

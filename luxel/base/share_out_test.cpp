@@ -187,7 +187,7 @@ TEST(Exchange, GoesOnUntilNobodyHasMore) {
   });
 }
 
-// What a member has sent is read with care: a piece that there is none of, and half a piece.
+// A member's data are read with care: a piece that does not exist, and half a piece, are errors.
 TEST(Exchange, RefusesWhatIsNotWhole) {
   for (const bool unknown_piece : {true, false})
     as_team(2, [&](Team& team) {

@@ -42,7 +42,7 @@ class Team {
   /// At the first member: what the others have told since the last call. Thread-safe.
   virtual Done told() = 0;
 
-  /// What all members have given to each other so far: calls of all_gather(), and their bytes.
+  /// Traffic of all members so far: calls of all_gather(), and their bytes.
   struct Gathered {
     uint64_t times = 0, bytes = 0;
   };

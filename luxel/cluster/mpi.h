@@ -12,11 +12,11 @@ namespace luxel::cluster {
 /// "Open MPI 4.1.4"; empty: luxel was built without MPI.
 std::string mpi_version();
 
-/// How many processes mpirun or srun says that it has started, by the environment: 1 where there is
+/// Number of processes that mpirun or srun has started, by the environment; 1 where there is
 /// neither.
 int processes_started();
 
-/// How a process takes part.
+/// A process's part in the common work.
 struct Joined {
   std::unique_ptr<Team> team;  ///< null: it works alone, or it only lends its cores
   bool works = true;

@@ -16,9 +16,9 @@
 namespace luxel::cluster {
 namespace {
 
-/// What a member asks of the first one: numbers of the counter, which are answered, or none; and
-/// what it tells. A window with MPI_Fetch_and_op would do, but Open MPI has none over TCP as Debian
-/// sets it up.
+/// A member's message to the first one: it takes numbers of the counter, with or without an answer,
+/// and tells the units done. A window with MPI_Fetch_and_op would do, but Open MPI has none over
+/// TCP as Debian sets it up.
 struct Request {
   uint64_t stage = 0;  ///< how many have begun: what comes late is of no stage any more
   uint64_t count = 0;
@@ -27,7 +27,7 @@ struct Request {
 };
 constexpr int kRequestTag = 1, kAnswerTag = 2;
 constexpr uint64_t kNoMore = uint64_t(1) << 60;
-/// What a header says of a member that has given up.
+/// Header of a member that has given up.
 constexpr int64_t kGivenUp = -1;
 /// So long others are waited for by a member that gives up [s].
 constexpr double kLastWait = 3;
@@ -192,7 +192,7 @@ class MpiTeam final : public Team {
     }
   }
 
-  /// What others still do of a stage whose own pieces are done.
+  /// At the first member: adds the units that others still do of a stage to its progress.
   void pass_on(Progress& progress) {
     const Done others = told();
     if (others.units == 0) return;
@@ -221,7 +221,7 @@ class MpiTeam final : public Team {
     return Failure{error};
   }
 
-  /// What members say that have given up: the first one's error.
+  /// Gathers the errors of members that have given up. Returns the first member's.
   Error gather_errors(const std::string& own, Progress& progress) {
     const auto sizes = headers(int64_t(own.size()), progress);
     if (!sizes) return sizes.error();

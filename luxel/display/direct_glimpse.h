@@ -1,4 +1,4 @@
-// Which surfaces lie in the light: a quick look, for choosing views. For this room only.
+// Surfaces that lie in the light: a quick look, for choosing views. For this room only.
 #pragma once
 
 #include <span>
@@ -33,7 +33,7 @@ Glimpse glimpse_of(const scene::Scene& scene);
 std::vector<uint8_t> lit_by_sources(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const Glimpse& glimpse, std::span<const trace::Ray> rays,
                                     std::span<const trace::Hit> hits);
-/// Whether light of the surroundings reaches each hit, by a few rays from it.
+/// 1 for each hit that light of the surroundings reaches, by a few rays from it.
 std::vector<uint8_t> lit_by_surroundings(const scene::Scene& scene, const trace::RayTracer& tracer,
                                          const Glimpse& glimpse, std::span<const trace::Ray> rays,
                                          std::span<const trace::Hit> hits);

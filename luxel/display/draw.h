@@ -25,12 +25,12 @@ struct DrawParams {
   SeenBehind behind = {};             ///< instead of the surroundings
 };
 
-/// How the surface that a camera's ray met looks from there. Called by many threads at once.
+/// Radiance or colour that the surface shows to the camera's ray. Many threads call it at once.
 using SeenAt = std::function<Rgb(const trace::Hit&)>;
 
-/// What is seen per pixel, 4 channels (A = share of the pixel that shows a surface). Back faces of
-/// one-sided materials are invisible, as in a real-time engine, so a closed room can be looked into
-/// from outside. Where no surface is seen: the surroundings.
+/// Draws the surfaces that a camera sees, 4 channels (A = share of the pixel that shows a surface).
+/// Back faces of one-sided materials are invisible, as in a real-time engine, so a closed room can
+/// be looked into from outside. Where no surface is seen: the surroundings.
 Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer& tracer,
                                const scene::Camera& camera, const SeenAt& seen_at,
                                const DrawParams& params, Progress& progress);
@@ -38,7 +38,7 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
 /// E [W/m^2] of the front side at a surface point.
 using IrradianceAt = std::function<Rgb(const scene::SurfacePoint&)>;
 
-/// What a surface sends to the eye: emitted radiance and that of what it reflects or scatters
+/// Radiance that a surface sends to the eye: emitted light and that which it reflects or scatters
 /// through, L + B / pi. An unlit surface sends the radiance of its colour, whatever falls on it.
 Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
                   const IrradianceAt& irradiance_at);

@@ -49,7 +49,7 @@ struct Candidate {
   From from = From::outside;
 };
 
-/// What all candidates look at.
+/// The scene and its data, which all candidates share.
 struct Stage {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
@@ -78,8 +78,8 @@ scene::Camera camera_at(const Mat34& world_from_camera, float fov_y_rad) {
   return camera;
 }
 
-/// How far from the centre the eye must stand along `back` for the box's corners to be in the
-/// frame: a corner at (x, y, z) in the camera's axes is inside when |x| <= (d - z) tan_x.
+/// Distance from the centre at which the eye must stand along `back` for the box's corners to be in
+/// the frame: a corner at (x, y, z) in the camera's axes is inside when |x| <= (d - z) tan_x.
 float fitting_distance(const Box3& box, const Mat34& axes, float tan_y, float aspect) {
   float distance = 0;
   for (int i = 0; i < 8; ++i) {
@@ -132,7 +132,8 @@ void add_inside(std::span<const PlaceInside> places, Candidate::From from, float
     }
 }
 
-/// What one candidate's rays meet. `scratch` has an entry per triangle, all zero before and after.
+/// Rays of one candidate that meet a triangle, and their area. `scratch` has an entry per triangle,
+/// all zero before and after.
 struct Seen {
   float area_m2 = 0;
   uint32_t rays = 0;
@@ -244,7 +245,7 @@ double light_marks(const Stage& stage, const View& view) {
   return 0.3 + 0.7 * std::min(1.0, view.lit / 0.75) - 1.5 * std::max(0.0, view.lit - 0.9);
 }
 
-/// Whether lights leave what cameras show in the dark. The surroundings leave nothing so.
+/// True: the lights leave all views in the dark. With surroundings nothing is dark.
 bool is_dark(const Stage& stage, std::span<const Candidate> candidates) {
   if (stage.glimpse.has_surroundings || stage.glimpse.sources.empty()) return false;
   std::vector<uint8_t> dark(candidates.size());
@@ -264,7 +265,7 @@ double score_of(const Stage& stage, const Candidate& candidate, LookFor what,
   const double detail = candidate.from == Candidate::From::outside
                             ? view.detail
                             : std::sqrt(view.detail) * view.width;
-  // What is seen through windows is not what a picture of rooms is to show.
+  // A picture of rooms is not meant to show the view through windows.
   const double indoors = candidate.from == Candidate::From::inside ? view.indoors : 1;
   return detail * std::sqrt(view.area_m2) * coverage_marks(candidate, view) *
          light_marks(stage, view) * (1 - view.near) * indoors * double(candidate.liking);
@@ -319,7 +320,7 @@ scene::Camera parallel_view(const Box3& box, Vec3 right, Vec3 up, float aspect) 
   return camera;
 }
 
-/// Whether rooms, and not all of them dark, are what there is of the scene.
+/// The scene consists of rooms, and not all of them are dark.
 bool consists_of_rooms(std::span<const PlaceInside> places) {
   const auto enclosed = std::ranges::count_if(places, is_enclosed);
   const auto lit = std::ranges::count_if(places, is_lit_room);

@@ -18,7 +18,7 @@ scene::Camera fitted(const Scene& scene, float aspect, Viewpoint from = Viewpoin
   return fit_camera(scene, *tracer, aspect, from);
 }
 
-/// Whether the usual camera stands within the scene's bounds.
+/// True where the usual camera stands within the scene's bounds.
 bool from_inside(const Scene& scene) {
   const Vec3 eye = column(fitted(scene, 1.5f).world_from_camera, 3);
   const Box3 box = world_bounds(scene);

@@ -15,10 +15,10 @@ struct Line {
   Rgb color;
 };
 
-/// What lines cover of each pixel: four channels, the colour and the share, 0 to 1. Where lines
-/// cross, the one that covers most of a pixel has it. A line that lies on a surface is not hidden
-/// by it: what is within a thousandth of its distance to the viewer does not count. Stops early
-/// when cancelled.
+/// Draws lines into four channels: the colour, and the share of a pixel that they cover, 0 to 1.
+/// Where lines cross, the one that covers most of a pixel has it. A line that lies on a surface is
+/// not hidden by it: surfaces hide lines that are farther away by over a thousandth of their
+/// distance. Stops early when cancelled.
 image::Image draw_lines(const scene::Scene& scene, const trace::RayTracer& tracer,
                         const scene::Camera& camera, int width, int height,
                         std::span<const Line> lines, Progress& progress);

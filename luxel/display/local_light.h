@@ -36,8 +36,7 @@ struct Viewer {
   bool orthographic = false;
 };
 
-/// What one point needs: material, and the unit vectors N, L (towards the light) and V (towards the
-/// viewer).
+/// Material of one point. N, L (towards the light) and V (towards the viewer) are unit vectors.
 struct LocalSurface {
   Rgb material;         ///< C_m
   Rgb specular;         ///< C_s
@@ -50,7 +49,7 @@ struct LocalSurface {
 Rgb local_color(LocalTechnique technique, const LocalSurface& surface, const LocalLights& lights,
                 Vec3 normal, Vec3 to_viewer);
 
-/// How a surface looks by a technique. Per vertex: the colours at the three corners, interpolated;
+/// Colour of a surface by a technique. Per vertex: the colours at the three corners, interpolated;
 /// the material's own colour, which may be textured, is that of the point in all three. Per pixel:
 /// N and V are those of the corners interpolated and made unit again.
 Rgb local_light_at(const scene::Scene& scene, const trace::Hit& hit, LocalTechnique technique,

@@ -20,7 +20,7 @@ struct NormalLine {
   float length_m = 0;
 };
 
-/// Whether draw_seen would show this triangle's side.
+/// True where draw_seen would show this triangle's side.
 bool is_seen(const scene::Scene& scene, const scene::SurfacePoint& p, Vec3 position,
              const Viewer& viewer) {
   return material_at(scene, p).double_sided ||

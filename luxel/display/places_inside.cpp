@@ -32,7 +32,7 @@ std::array<Vec3, kDirections> directions() {
   return out;
 }
 
-/// Whether a ray meets a solid from inside.
+/// A ray meets a solid from inside.
 bool is_inner_side(const scene::Scene& scene, const trace::Hit& hit) {
   return hit.found() && hit.back_face &&
          !scene::reflects_from_behind(scene::material_at(scene, hit.point()));

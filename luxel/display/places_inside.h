@@ -18,9 +18,9 @@ struct PlaceInside {
   std::vector<SeenSide> seen;  ///< what of surfaces is in these directions
 };
 
-/// Whether a place lies in a room: surfaces on nearly all sides, and a roof above.
+/// True where a place lies in a room: surfaces on nearly all sides, and a roof above.
 bool is_enclosed(const PlaceInside& place);
-/// Whether there is light where the place looks.
+/// True where light falls on enough of what the place sees.
 bool is_lit(const PlaceInside& place);
 
 /// Places spread evenly through the scene's bounds, each moved to eye level above what is under it;

@@ -67,10 +67,10 @@ image::Image QuadraticView::draw(const scene::Camera& camera, int width, int hei
     RasterRows rows;
     rows.width = width;
     for (size_t band = begin; band < end; ++band) {
-      // What each pixel sees.
+      // Finds the triangle that each pixel sees.
       rows.first = int(band) * kBandRows, rows.end = std::min(rows.first + kBandRows, height);
       fill(triangles, of_band[band], rays_of.orthographic, rows);
-      // That is its colour.
+      // Each pixel gets its colour.
       size_t k = 0;
       for (int y = rows.first; y < rows.end; ++y)
         for (int x = 0; x < width; ++x, ++k) {

@@ -1,4 +1,4 @@
-// How baked.glb shows the light that was baked.
+// Ways in which baked.glb shows the baked light.
 #pragma once
 
 #include <cstdint>

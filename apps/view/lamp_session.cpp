@@ -91,12 +91,11 @@ void begin_or_stop_check(LampSession& session) {
 
 bool take_check(LampSession& session) {
   if (!session.check) return false;
-  for (const Result<pipeline::IndirectError>& found : session.check->take()) {
-    session.found = found ? view::sentence_of(*found, kCheck) : found.error().message;
-    session.check.reset();
-    return true;
-  }
-  return false;
+  const std::vector<Result<pipeline::IndirectError>> found = session.check->take();
+  if (found.empty()) return false;
+  session.found = found[0] ? view::sentence_of(*found[0], kCheck) : found[0].error().message;
+  session.check.reset();
+  return true;
 }
 
 void begin_to_save_lxr(LampSession& session) {

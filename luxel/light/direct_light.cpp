@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 #include "luxel/base/check.h"
 #include "luxel/base/job.h"

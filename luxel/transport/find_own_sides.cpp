@@ -255,6 +255,7 @@ Result<std::vector<uint64_t>> find_under(const OwnSides& in, Team* team, Progres
 Result<OwnSides> find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                                 const atlas::TexelMap& map, const trace::RayTracer& tracer,
                                 Team* team, Progress& progress) {
+  progress.begin("wall sides", 0);
   OwnSides out{scene, atlas, map, tracer};
   LUXEL_TRY(out.under, find_under(out, team, progress));
   std::vector<Inside> inside(map.texels.size());

@@ -50,8 +50,8 @@ enum class MayBeInside : bool { no, yes };
 /// Samples inside of solids do not count.
 OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                         const atlas::TexelMap& map, const trace::RayTracer& tracer);
-/// find_own_sides() shared out among the members of a team, if there is one. Errors: cancelled,
-/// another member gives up.
+/// find_own_sides() shared out among the members of a team, if there is one. The stage "wall
+/// sides". Errors: cancelled, another member gives up.
 Result<OwnSides> find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                                 const atlas::TexelMap& map, const trace::RayTracer& tracer,
                                 Team* team, Progress& progress);

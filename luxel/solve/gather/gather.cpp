@@ -207,7 +207,6 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   LUXEL_CHECK(!stores.team || !(stores.device || stores.keep || stores.earlier ||
                                 (stores.parts && stores.parts->shares()) || observer.on_estimate));
   const auto start = Clock::now();
-  progress.begin("wall sides", 0);
   LUXEL_TRY(const transport::OwnSides sides,
             transport::find_own_sides(scene.scene, scene.atlas, scene.map, scene.tracer,
                                       stores.team, progress));

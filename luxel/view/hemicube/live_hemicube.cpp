@@ -140,7 +140,7 @@ void Solving::has_solution(const hemicube::Solution& solution) {
   change([&](GrowingLight& light) { take_bounce(solution.field.irradiance, light); });
   choose_exposure();
   hand({.is_solved = true});
-  // Nobody looks at what a bake does with it.
+  // The bake ends here: the window shows nothing that it would make of the solution.
   progress.request_cancel();
 }
 

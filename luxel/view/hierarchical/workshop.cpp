@@ -274,7 +274,7 @@ class WorkshopThread : public Workshop {
     return {};
   }
 
-  struct Next {};  ///< what that is, next() tells
+  struct Next {};  ///< the task that next() tells
 
   const pipeline::BakeSettings settings_;
   mutable std::mutex mutex_;

@@ -19,12 +19,16 @@ std::optional<uint64_t> get(const PartWork& work, size_t k, ByteReader& in) {
   return in.ok && work.get(k, in) ? std::optional(rays) : std::nullopt;
 }
 
+/// A kept part ends with the number of the bytes before it. One of another size is not taken, even in
+/// part: computing begins from values that get() writes.
 std::optional<uint64_t> find(const KeptStage& kept, const PartWork& work, size_t k) {
   const auto bytes = kept.find(k);
   if (!bytes) return std::nullopt;
-  ByteReader in{*bytes};
-  const auto rays = get(work, k, in);
-  return in.ended_well() ? rays : std::nullopt;
+  const std::span<const std::byte> all(*bytes);
+  if (all.size() < sizeof(uint64_t)) return std::nullopt;
+  ByteReader in{all.first(all.size() - sizeof(uint64_t))}, end{all.last(sizeof(uint64_t))};
+  if (end.get_value<uint64_t>() != in.bytes.size()) return std::nullopt;
+  return get(work, k, in);
 }
 
 }  // namespace
@@ -33,6 +37,7 @@ void keep_part(const KeptStage& kept, const PartWork& work, size_t k, uint64_t r
   if (!kept.wants()) return;
   ByteWriter out;
   put(work, k, rays, out);
+  out.put_value(uint64_t(out.bytes.size()));
   kept.keep(k, out.bytes);
 }
 

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/solve/matrix/relighter.h"
 
@@ -44,7 +45,8 @@ int main(int argc, char** argv) {
     return std::fprintf(stderr, "give a file made by: luxel relight SCENE -o FILE.lxr\n"), 2;
   const int updates = argc > 2 ? std::max(1, std::atoi(argv[2])) : 60;
   Result<matrix::Relighter> opened = open_lxr(argv[1]);
-  if (!opened) return std::fprintf(stderr, "%s\n", opened.error().message.c_str()), 1;
+  if (!opened)
+    return std::fprintf(stderr, "%s\n", luxel::short_message(opened.error().message).c_str()), 1;
   matrix::Relighter& relighter = *opened;
 
   // The thread that would draw.

@@ -19,8 +19,8 @@ std::optional<uint64_t> get(const PartWork& work, size_t k, ByteReader& in) {
   return in.ok && work.get(k, in) ? std::optional(rays) : std::nullopt;
 }
 
-/// A kept part ends with the number of the bytes before it. One of another size is not taken, even in
-/// part: computing begins from values that get() writes.
+/// A kept part ends with the number of the bytes before it. One of another size is not taken, even
+/// in part: computing begins from values that get() writes.
 std::optional<uint64_t> find(const KeptStage& kept, const PartWork& work, size_t k) {
   const auto bytes = kept.find(k);
   if (!bytes) return std::nullopt;

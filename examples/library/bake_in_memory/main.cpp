@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "luxel/base/file.h"
+#include "luxel/base/shown_text.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/shapes.h"
 
@@ -51,5 +52,6 @@ static Status run(const std::filesystem::path& folder) {
 int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "give a folder for lightmap.exr and preview.png\n"), 2;
   const Status done = run(argv[1]);
-  if (!done) return std::fprintf(stderr, "%s\n", done.error().message.c_str()), 1;
+  if (!done)
+    return std::fprintf(stderr, "%s\n", luxel::short_message(done.error().message).c_str()), 1;
 }

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "luxel/base/shown_text.h"
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/solve/matrix/relighter.h"
 
@@ -49,5 +50,6 @@ int main(int argc, char** argv) {
   if (argc < 2)
     return std::fprintf(stderr, "give a file made by: luxel relight SCENE -o FILE.lxr\n"), 2;
   const Status done = run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 60);
-  if (!done) return std::fprintf(stderr, "%s\n", done.error().message.c_str()), 1;
+  if (!done)
+    return std::fprintf(stderr, "%s\n", luxel::short_message(done.error().message).c_str()), 1;
 }

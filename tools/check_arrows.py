@@ -7,7 +7,7 @@
 The rule: a room includes itself, base, the rooms of its row, and what those may include in turn;
 its CMakeLists.txt links only rooms of its row. Rooms lie in luxel/, but for the programs and bench.
 Folders within a room do not include one another in circles. Programs print in their print.cpp alone, and JSON becomes
-text in luxel/base/shown_text.h alone.
+text in luxel/base/shown_text.h alone. Structs of *_shared.h, which are luxel::on_device, have names of their own.
 """
 import pathlib
 import re
@@ -30,6 +30,7 @@ PRINT_EXCEPT = {"luxel/base/check.cpp",  # says which contract broke, then abort
                 "bench/child.cpp"}  # ends the child process that it forked to measure
 TBB_ONLY = {"luxel/base/parallel.h", "luxel/base/parallel.cpp"}
 CGAL_ONLY = "luxel/base/exact_predicates.cpp"
+SHARED = re.compile(r"^(?:struct |(?:IN_)?BLOCK\(|PUSH\()(\w+)\)? \{", re.MULTILINE)
 TOP = ("apps", "bench", "bindings", "examples")  # rooms that do not lie in luxel/
 
 
@@ -141,6 +142,13 @@ def print_faults(path, room, code):
         yield f"{path}:{line}: a library prints or exits ({match.group().strip()}); return a Result"
 
 
+def shared_faults(path, code, shared):
+    """`shared`: the files in which structs stand so far. The linker would take two of one name for one."""
+    for name in SHARED.findall(code) if path.endswith("_shared.h") else []:
+        if shared.setdefault(name, path) != path:
+            yield f"{path}: on_device::{name} stands in {shared[name]}, too"
+
+
 def link_faults(table, path, code):
     for name, rest in re.findall(r"luxel_room\(\s*(\S+?)[\s)]([^)]*)", re.sub(r"#[^\n]*", "", code)):
         if name not in table.direct:
@@ -184,7 +192,7 @@ def faults(root):
         if (room in table.planned) == (root / folder_of_room(room) / "CMakeLists.txt").exists():
             yield f"ARCHITECTURE.md: {room} is " + (
                 "marked (planned), but is here" if room in table.planned else "not here; mark it (planned)")
-    arrows = {}
+    arrows, shared = {}, {}
     for file in sorted(root.rglob("*")):
         path = file.relative_to(root).as_posix()
         top = path.split("/")[0]
@@ -202,6 +210,7 @@ def faults(root):
         yield from include_faults(table, path, room, code)
         yield from print_faults(path, room, code)
         yield from shown_faults(path, room, code)
+        yield from shared_faults(path, code, shared)
         if room in table.direct and not path.endswith("_test.cpp") and "_test_" not in path:
             for match in INCLUDE.finditer(code):
                 if match.group(1) == '"' and table.room_of(match.group(2)) == room:
@@ -224,6 +233,7 @@ GOOD = {
     "luxel/scene/CMakeLists.txt": "luxel_room(scene USES base LIBS a::b)",
     "luxel/scene/scene.h": '#include "luxel/base/vec.h"\n// printf() is not for us\nauto s = "exit(1)"; snprintf(a);',
     "luxel/scene/scene_test.cpp": '#include "tests/support.h"\nprintf("x");',
+    "luxel/scene/s_shared.h": "struct Pixel {\n};",
     "luxel/transport/CMakeLists.txt": "luxel_room(transport USES scene)",
     "luxel/solve/a/CMakeLists.txt": "luxel_room(solve/a USES transport)",
     "luxel/solve/a/a.cpp": '#include "luxel/solve/a/a.h"\n#include "luxel/scene/scene.h"\n#include <vector>',
@@ -259,6 +269,7 @@ BAD = [
     ("luxel/pipeline/low/l.h", '#include "luxel/pipeline/high/h.h"', "within pipeline, high includes low"),
     ("apps/cli/a.cpp", 'std::fputs(name, stderr);', "only print.cpp may"),
     ("luxel/scene/s.cpp", "json.dump(2);", "use json_text()"),
+    ("luxel/transport/t_shared.h", "BLOCK(Pixel) {\n};", "on_device::Pixel stands in luxel/scene/s_shared.h"),
     ("luxel/attic/a.cpp", "", "lies in no room"),
     ("luxel/attic/CMakeLists.txt", "luxel_room(attic USES base)", "room attic has no row"),
     ("luxel/scene/CMakeLists.txt", "luxel_room(scene\n USES base transport\n LIBS a)", "scene links transport"),

@@ -10,9 +10,11 @@
 #include "luxel/gpu/pieces.h"
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/shaders/test_double.comp.h"
+#include "luxel/gpu/shaders/test_fields.comp.h"
 #include "luxel/gpu/shaders/test_triangle.frag.h"
 #include "luxel/gpu/shaders/test_triangle.vert.h"
 #include "luxel/gpu/target.h"
+#include "luxel/gpu/test_support_shared.h"
 
 namespace luxel::gpu {
 namespace {
@@ -117,6 +119,52 @@ TEST_F(Gpu, ComputesOnABuffer) {
   std::memcpy(numbers.data(), buffer->mapped, 4 * numbers.size());
   for (uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(numbers[i], 2 * i);
   EXPECT_EQ(numbers[kCount], kCount) << "beyond the end";
+}
+
+// Members are numbered by their places in the shader: each differs from those beside it.
+TEST_F(Gpu, FindsEachMemberWhereTheHostWritesIt) {
+  if (!device_->has_doubles) GTEST_SKIP() << "the device has no double precision";
+  using namespace on_device;
+  std::vector<gpu::Buffer> held;
+  const auto address_of = [&](const auto& values) {
+    auto buffer = buffer_with(*device_, std::as_bytes(std::span(values)), "a test's buffer");
+    EXPECT_TRUE(buffer) << buffer.error().message;
+    held.push_back(std::move(*buffer));
+    return held.back().address;
+  };
+  const TestBlock block{
+      .whole = 2, .three = {3, 4, 5}, .floats = address_of(std::array<float, 2>{-1, 6})};
+  TestFields fields{.whole = 1,
+                    .block = address_of(std::array{block}),
+                    .negative = 7,
+                    .fine = 8,
+                    .two = {9, 10},
+                    .three = {11, 12, 13},
+                    .seed = halves(uint64_t(15) << 32 | 14),
+                    .some = {16, 17, 18},
+                    .pair = {19, 20},
+                    .pairs = {TestPair{21, 22}, TestPair{23, 24}},
+                    .matrix = {}};
+  fields.matrix[2 * 4 + 1] = 25;
+  const auto answers =
+      make_buffer(*device_, kTestFields * sizeof(float), Access::to_host, "answers");
+  ASSERT_TRUE(answers) << answers.error().message;
+  const TestPush push{.last = 29,
+                      .fields = address_of(std::array{fields}),
+                      .pairs = address_of(std::array{TestPair{-1, -1}, TestPair{26, 27}}),
+                      .vectors = address_of(std::array<float, 8>{-1, -1, -1, -1, -1, -1, -1, 28}),
+                      .numbers = address_of(std::array<uint, 1>{0}),
+                      .answers = answers->address};
+  const auto pipeline = make_compute_pipeline(*device_, test_fields_comp, {sizeof push, {}});
+  ASSERT_TRUE(pipeline) << pipeline.error().message;
+  ASSERT_TRUE(commands_->run([&](VkCommandBuffer commands) {
+    bind(*device_, commands, *pipeline, push);
+    device_->vk.vkCmdDispatch(commands, 1, 1, 1);
+    full_barrier(*device_, commands);
+  }));
+  std::vector<float> found(kTestFields);
+  std::memcpy(found.data(), answers->mapped, kTestFields * sizeof(float));
+  for (uint k = 0; k < kTestFields; ++k) EXPECT_EQ(found[k], float(k + 1));
 }
 
 TEST_F(Gpu, DrawsTheMeanOfSamples) {

@@ -38,7 +38,7 @@ static_assert(sizeof(DevicePunctualLight) == 76);
 /// The emission of a triangle light.
 struct LightTexture {
   Rgb emission;
-  trace::PlacedPicture picture;  ///< its places are those of a, b and c
+  on_device::PlacedPicture picture;  ///< its places are those of a, b and c
 };
 static_assert(sizeof(LightTexture) == 64);
 
@@ -52,7 +52,7 @@ static_assert(int(scene::LightKind::point) == 0 && int(scene::LightKind::spot) =
               int(scene::LightKind::directional) == 2);
 
 struct Setup {
-  trace::DeviceWorld world;
+  on_device::World world;
   VkDeviceAddress triangles, nodes, textures, texels, linear_of_byte;
   VkDeviceAddress punctual, punctual_order, punctual_nodes, profiles, profile_values;
   VkDeviceAddress bright_texels, guide, below, row_cosine, pixels;

@@ -131,7 +131,7 @@ Status DevicePathTracer::Impl::make_room(size_t items, bool with_hits) {
   LUXEL_TRY(sums, gpu::make_buffer(device, items * sizeof(DeviceSums), Access::device, kWhat));
   LUXEL_TRY(sums_back,
             gpu::make_buffer(device, items * sizeof(DeviceSums), Access::to_host, kWhat));
-  const size_t bytes = with_hits ? items * sizeof(trace::DeviceHit) : 16;
+  const size_t bytes = with_hits ? items * sizeof(on_device::Hit) : 16;
   LUXEL_TRY(hits, gpu::make_buffer(device, bytes, Access::device, kWhat));
   return {};
 }

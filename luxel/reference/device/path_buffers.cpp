@@ -34,7 +34,7 @@ struct PathMaterial {
   Rgb base_color, emission;
   float alpha, cutoff, metallic;
   uint32_t flags;
-  trace::DevicePicture base, metal, emission_picture;
+  on_device::Picture base, metal, emission_picture;
 
   static constexpr uint32_t kDoubleSided = 1, kUnlit = 2, kMasked = 4, kFromBehind = 8;
 };
@@ -51,7 +51,7 @@ struct PathLight {
 static_assert(sizeof(PathLight) == 64);
 
 struct PathSetup {
-  trace::DeviceWorld world;
+  on_device::World world;
   VkDeviceAddress triangles, materials, texels, linear_of_byte, emitters, chance_below, lights,
       row_below, column_below, pixels;
   Rgb background;
@@ -101,7 +101,7 @@ PathTriangle path_triangle(const TracedScene& world, uint32_t instance, uint32_t
   t.material = mesh.triangle_material[triangle];
   const bool is_sheet = !mesh.other_side.empty() && mesh.other_side[triangle] != scene::kNone;
   t.other_side = is_sheet ? world.surfaces.number(instance, mesh.other_side[triangle])
-                          : trace::DeviceHit::kNoTriangle;
+                          : on_device::kNoTriangle;
   t.pdf_area = world.emitters.pdf_area[number];
   return t;
 }

@@ -55,7 +55,7 @@ struct DeviceView {
   uint32_t back, two_sided_back;
 };
 struct LookSetup {
-  trace::DeviceWorld world;
+  on_device::World world;
   VkDeviceAddress triangles, nodes, pixels, around;
   VkDeviceAddress pictures, texels, linear_of_byte;
   uint32_t pixel_count, element_count;
@@ -87,7 +87,7 @@ std::vector<DevicePixel> device_pixels(std::span<const hemicube::Pixel> pixels) 
 /// Triangles of a scene as hemicubes see them, and pictures of their emission.
 struct SeenScene {
   std::vector<SeenTriangle> triangles;
-  std::vector<trace::PlacedPicture> pictures;
+  std::vector<on_device::PlacedPicture> pictures;
   std::vector<uint32_t> texels;
 };
 
@@ -102,7 +102,7 @@ void add_seen(const hemicube::Senders& s, uint32_t instance, uint32_t triangle,
       {.first_root = s.mesh.first_root[out.triangles.size()],
        .grid = s.mesh.grid[instance],
        .other_side = is_sheet ? s.mesh.first_triangle[instance] + mesh.other_side[triangle]
-                              : trace::DeviceHit::kNoTriangle,
+                              : on_device::kNoTriangle,
        .flags = (scene::reflects_from_behind(m) ? SeenTriangle::kTwoSided : 0) |
                 (shines ? SeenTriangle::kEmissive : 0),
        .emission = m.emission});

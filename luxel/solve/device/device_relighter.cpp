@@ -62,7 +62,7 @@ static_assert(sizeof(MovedLight) == 52);
 static_assert(sizeof(matrix::PatchPoint) == 24);
 
 struct DirectPush {
-  trace::DeviceWorld world;
+  on_device::World world;
   VkDeviceAddress lights, places, light;
   uint32_t place_count, light_count;
   uint32_t first_group = 0;

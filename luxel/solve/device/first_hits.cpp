@@ -8,7 +8,7 @@ namespace luxel::device {
 namespace {
 
 struct HitsPush {
-  trace::DeviceWorld world;
+  on_device::World world;
   VkDeviceAddress elements, hits;
   uint32_t seed_low, seed_high;
   uint32_t element_count, samples;
@@ -30,7 +30,7 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
   out.element_count = n, out.params = params;
   LUXEL_TRY(out.elements, upload_elements(commands, elements));
   LUXEL_TRY(out.hits,
-            gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(trace::DeviceHit),
+            gpu::make_buffer(device, tiles * kTogether * params.samples * sizeof(on_device::Hit),
                              gpu::Access::device, "the buffer of hits"));
   LUXEL_TRY(out.pipeline,
             gpu::make_compute_pipeline(device, first_hits_comp(tracer.kind()),

@@ -16,7 +16,7 @@ struct FirstHits {
   size_t element_count = 0;
   FirstHitsParams params;
   gpu::Buffer elements;
-  gpu::Buffer hits;  ///< trace::DeviceHit, at index_of(); filled by trace_first_hits()
+  gpu::Buffer hits;  ///< on_device::Hit, at index_of(); filled by trace_first_hits()
   gpu::Pipeline pipeline;
   gpu::PieceSize piece{64};  ///< of groups: each has the rays of 64 elements in one cell
 

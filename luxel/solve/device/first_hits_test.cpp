@@ -28,13 +28,13 @@ transport::Elements elements_on_sphere(size_t count) {
 
 /// Directions as they come back from a large sphere around: where they meet it.
 std::vector<Vec3> met_places(const scene::Scene& scene, const FirstHits& hits,
-                             std::span<const trace::DeviceHit> values, size_t element) {
+                             std::span<const on_device::Hit> values, size_t element) {
   std::vector<Vec3> out;
   for (size_t k = 0; k < hits.params.samples; ++k) {
-    const trace::DeviceHit& hit = values[hits.index_of(element, k)];
-    EXPECT_NE(hit.number, trace::DeviceHit::kNoTriangle);
-    out.push_back(scene::world_position(
-        scene, {0, hit.number & ~trace::DeviceHit::kBackFace, {hit.u, hit.v}}));
+    const on_device::Hit& hit = values[hits.index_of(element, k)];
+    EXPECT_NE(hit.number, on_device::kNoTriangle);
+    out.push_back(
+        scene::world_position(scene, {0, hit.number & ~on_device::kBackFace, {hit.u, hit.v}}));
   }
   return out;
 }
@@ -59,8 +59,8 @@ TEST_F(FirstHitsOnDevice, AreThoseOfTheProcessorsRays) {
       auto hits = prepare_first_hits(*tracer, *commands_, elements, {samples, seed});
       ASSERT_TRUE(hits) << hits.error().message;
       ASSERT_TRUE(trace_first_hits(*tracer, *commands_, *hits));
-      const auto values = gpu::downloaded<trace::DeviceHit>(
-          *commands_, hits->hits, hits->hits.size / sizeof(trace::DeviceHit), "hits");
+      const auto values = gpu::downloaded<on_device::Hit>(
+          *commands_, hits->hits, hits->hits.size / sizeof(on_device::Hit), "hits");
       ASSERT_TRUE(values) << values.error().message;
       for (size_t i = 0; i < elements.size(); ++i) {
         std::vector<trace::Ray> rays(samples);

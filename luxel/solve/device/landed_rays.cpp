@@ -41,7 +41,7 @@ struct EndCounts {
 };
 
 struct Setup {
-  trace::DeviceWorld world;
+  on_device::World world;
   VkDeviceAddress elements, landings, mixed, shares;
   VkDeviceAddress slots, first_row, counts, open;
   RaySeeds seeds;

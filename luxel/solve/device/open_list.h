@@ -12,7 +12,7 @@ namespace luxel::device {
 /// OpenRay of landed_rays.glsl.
 struct DeviceOpenRay {
   uint32_t element, place, sample, doublings;
-  trace::DeviceHit hit;
+  on_device::Hit hit;
 };
 static_assert(sizeof(DeviceOpenRay) == 32);
 

@@ -6,7 +6,7 @@
 
 namespace luxel::trace {
 
-DevicePicture DevicePictures::picture(const scene::TextureRef& ref) {
+on_device::Picture DevicePictures::picture(const scene::TextureRef& ref) {
   if (ref.texture == scene::kNone) return {};
   const scene::Texture& t = scene_.textures[ref.texture];
   uint32_t& first = first_[ref.texture];
@@ -23,8 +23,8 @@ DevicePicture DevicePictures::picture(const scene::TextureRef& ref) {
           uint32_t(ref.filter == scene::Filter::nearest)};
 }
 
-PlacedPicture DevicePictures::placed(const scene::Mesh& mesh, uint32_t triangle,
-                                     const scene::TextureRef& ref) {
+on_device::PlacedPicture DevicePictures::placed(const scene::Mesh& mesh, uint32_t triangle,
+                                                const scene::TextureRef& ref) {
   return {picture(ref), !texture_coordinates(mesh, ref).empty(),
           places_in_picture(mesh, triangle, ref)};
 }

@@ -10,6 +10,7 @@
 #include "luxel/trace/vulkan/faster_hierarchy.h"
 #include "luxel/trace/vulkan/shaders/closest.comp.h"
 #include "luxel/trace/vulkan/shaders/occluded.comp.h"
+#include "luxel/trace/vulkan/trace_push_shared.h"
 
 namespace luxel::trace {
 namespace {
@@ -19,11 +20,7 @@ constexpr size_t kGroup = 64;  // as the shaders have it
 constexpr float kLargestScene_m = 1e15f;
 constexpr std::string_view kTriangles = "the buffer of triangles";
 
-struct TracePush {
-  DeviceWorld world;
-  VkDeviceAddress rays, out;
-  uint32_t first, end;
-};
+using on_device::TracePush;
 
 }  // namespace
 
@@ -98,10 +95,10 @@ Result<DeviceRayTracer> DeviceRayTracer::build(const gpu::Device& device,
   return build(device, scene, own_hierarchy(device));
 }
 
-DeviceWorld DeviceRayTracer::world() const {
+on_device::World DeviceRayTracer::world() const {
   return {kind_ == HierarchyKind::driver ? driver_.world.address : nodes_.address,
-          triangles_.address, open_materials_.address, open_triangles_.address,
-          open_texels_.address};
+          triangles_.address,
+          {open_materials_.address, open_triangles_.address, open_texels_.address}};
 }
 
 Result<double> DeviceRayTracer::dispatch(const gpu::Pipeline& pipeline, VkDeviceAddress rays,
@@ -120,24 +117,24 @@ Status DeviceRayTracer::make_room(size_t count) {
   room_ = {}, sent_ = {}, answered_ = {};
   constexpr std::string_view kWhat = "the buffer of rays";
   LUXEL_TRY(sent_, gpu::make_buffer(*device_, count * sizeof(Ray), gpu::Access::from_host, kWhat));
-  LUXEL_TRY(answered_,
-            gpu::make_buffer(*device_, count * sizeof(DeviceHit), gpu::Access::to_host, kWhat));
+  LUXEL_TRY(answered_, gpu::make_buffer(*device_, count * sizeof(on_device::Hit),
+                                        gpu::Access::to_host, kWhat));
   LUXEL_TRY(room_.rays,
             gpu::make_buffer(*device_, count * sizeof(Ray), gpu::Access::device, kWhat));
   LUXEL_TRY(room_.hits,
-            gpu::make_buffer(*device_, count * sizeof(DeviceHit), gpu::Access::device, kWhat));
+            gpu::make_buffer(*device_, count * sizeof(on_device::Hit), gpu::Access::device, kWhat));
   room_.count = count;
   return {};
 }
 
-Hit DeviceRayTracer::hit_of(const DeviceHit& met) const {
-  if (met.number == DeviceHit::kNoTriangle) return {};
-  const auto drawn = scene::drawn_triangle(first_triangle_, met.number & ~DeviceHit::kBackFace);
+Hit DeviceRayTracer::hit_of(const on_device::Hit& met) const {
+  if (met.number == on_device::kNoTriangle) return {};
+  const auto drawn = scene::drawn_triangle(first_triangle_, met.number & ~on_device::kBackFace);
   Hit out{met.t,
           drawn.instance,
           drawn.triangle,
           {met.u, met.v},
-          (met.number & DeviceHit::kBackFace) != 0};
+          (met.number & on_device::kBackFace) != 0};
   if (!out.back_face) return out;
   if (const auto other = scene::other_side_of(*scene_, out.point()))
     out.triangle = other->triangle, out.at = other->at, out.back_face = false;
@@ -161,8 +158,8 @@ Status DeviceRayTracer::trace_parts(const gpu::Pipeline& pipeline, size_t bytes_
 
 Status DeviceRayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) {
   LUXEL_CHECK(rays.size() == hits.size());
-  return trace_parts(closest_, sizeof(DeviceHit), rays, [&](size_t first, size_t count) {
-    const auto* met = reinterpret_cast<const DeviceHit*>(answered_.mapped);
+  return trace_parts(closest_, sizeof(on_device::Hit), rays, [&](size_t first, size_t count) {
+    const auto* met = reinterpret_cast<const on_device::Hit*>(answered_.mapped);
     parallel_for(count, 4096, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) hits[first + i] = hit_of(met[i]);
     });
@@ -183,7 +180,7 @@ Result<DeviceRays> DeviceRayTracer::upload(std::span<const Ray> rays) {
   out.count = rays.size();
   constexpr std::string_view kWhat = "the buffer of rays";
   LUXEL_TRY(out.rays, gpu::uploaded(commands_, std::as_bytes(rays), kWhat));
-  LUXEL_TRY(out.hits, gpu::make_buffer(*device_, rays.size() * sizeof(DeviceHit),
+  LUXEL_TRY(out.hits, gpu::make_buffer(*device_, rays.size() * sizeof(on_device::Hit),
                                        gpu::Access::device, kWhat));
   return out;
 }

@@ -18,23 +18,10 @@ namespace luxel::trace {
 struct DeviceRays {
   size_t count = 0;
   gpu::Buffer rays;  ///< trace::Ray, as on the processor
-  gpu::Buffer hits;  ///< DeviceHit of each, once closest_hits() has run
+  gpu::Buffer hits;  ///< on_device::Hit of each, once closest_hits() has run
 };
 
-/// A ray's hit, as devices leave it.
-struct DeviceHit {
-  float t = 0, u = 0, v = 0;
-  uint32_t number = 0;  ///< of the drawn triangle, kBackFace added; or kNoTriangle
-
-  static constexpr uint32_t kBackFace = 1u << 31, kNoTriangle = UINT32_MAX;
-};
-static_assert(sizeof(DeviceHit) == 16 && sizeof(Ray) == 32);
-
-/// Where shaders find what rays are traced through: World in shaders/ray.glsl. `nodes` is the
-/// driver's own hierarchy where that is the kind.
-struct DeviceWorld {
-  VkDeviceAddress nodes = 0, triangles = 0, open_materials = 0, open_triangles = 0, open_texels = 0;
-};
+static_assert(sizeof(Ray) == 32);  // as shaders/ray.glsl reads it
 
 /// Rays and triangles in a device's memory; meshes with several instances are stored once, as
 /// RayTracer stores them. It answers as RayTracer does, up to rounding: rays that
@@ -67,11 +54,11 @@ class DeviceRayTracer {
 
   /// A device's hit as those of RayTracer: what has two sides is met on the side that the ray comes
   /// from.
-  Hit hit_of(const DeviceHit& met) const;
+  Hit hit_of(const on_device::Hit& met) const;
 
   /// For shaders that trace rays themselves: they include shaders/hierarchy.glsl, are compiled for
   /// kind() (luxel_ray_shaders() in CMake), and get shader_constant() as their constant 0.
-  DeviceWorld world() const;
+  on_device::World world() const;
   HierarchyKind kind() const { return kind_; }
   uint32_t shader_constant() const {
     return uint32_t(lets_light_through_) | uint32_t(has_instances_) << 1;

@@ -4,17 +4,11 @@
 #include "hierarchy.glsl"
 layout(local_size_x = 64) in;
 
-layout(buffer_reference, scalar) writeonly buffer Blocked { uint at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  World world;
-  Vectors rays;
-  Blocked blocked;
-  uint first, end;  // of the rays that are traced
-};
+OUT_BUFFER(Answers, uint);
+#include "luxel/trace/vulkan/trace_push_shared.h"
 
 void main() {
   uint i = first + gl_GlobalInvocationID.x;
   if (i >= end) return;
-  blocked.at[i] = uint(trace(world, ray_at(rays, i), true).number != kNoTriangle);
+  answers.at[i] = uint(trace(world, ray_at(rays, i), true).number != kNoTriangle);
 }

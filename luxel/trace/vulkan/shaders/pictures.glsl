@@ -1,12 +1,6 @@
 // Textures of a scene, looked up as the processor does: ../device_pictures.h.
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
-
-struct Picture {
-  uint first, width, height, wrap_u, wrap_v, nearest;
-};
-layout(buffer_reference, scalar) readonly buffer Texels { uint at[]; };
-layout(buffer_reference, scalar) readonly buffer Floats { float at[]; };
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/trace/vulkan/world_shared.h"
 
 const uint kClamp = 1, kMirror = 2;  // scene::Wrap
 
@@ -64,12 +58,6 @@ float alpha_between(float alpha[3], vec2 uv) {
   return alpha[0] + (alpha[1] - alpha[0]) * uv.x + (alpha[2] - alpha[0]) * uv.y;
 }
 
-// A picture on a triangle.
-struct PlacedPicture {
-  Picture picture;
-  uint is_placed;
-  vec2 places[3];
-};
 vec3 colour_at(Texels texels, Floats linear_of_byte, PlacedPicture p, vec2 uv) {
   return colour_at(texels, linear_of_byte, p.picture, p.is_placed != 0, p.places, uv).xyz;
 }

@@ -10,27 +10,11 @@ const bool kSomeLetLightThrough = (kWorld & 1u) != 0, kHasInstances = (kWorld & 
 // The reciprocal may be off by 2.5 units in the last place, as Vulkan allows.
 const float kWider = 1.000001;
 
-const uint kNoTriangle = 0xffffffffu;
-const uint kBackFace = 1u << 31;
 const uint kMaxDepth = kHasInstances ? 128 : 64;  // of the world, and of a mesh below it
-
-// Three vectors a triangle (binary_hierarchy.h, device_hierarchy.h), two a ray: origin and t_min, direction and t_max.
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Vectors { vec4 at[]; };
-
-// What rays are traced through.
-struct World {
-  Vectors nodes, triangles;
-  SeeThrough see_through;
-};
 
 struct Ray {
   vec3 origin, direction;
   float t_min, t_max;
-};
-
-struct Hit {
-  float t, u, v;
-  uint number;  // of the triangle, kBackFace added where it is met from behind; or kNoTriangle
 };
 
 // Where a ray is among triangles: in the world, or in the space of a mesh that instances share.

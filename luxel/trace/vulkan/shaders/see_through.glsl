@@ -1,30 +1,8 @@
-// How much of a ray's light a surface stops: see_through.h has the structs, scene::passage_at() the
-// rules. Numbers by chance are those of the processor's rays, bit for bit.
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
+// How much of a ray's light a surface stops: scene::passage_at() has the rules. Numbers by chance are
+// those of the processor's rays, bit for bit.
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/base/both_sobol.h"
 #include "luxel/trace/vulkan/shaders/pictures.glsl"
-
-struct SeeThroughMaterial {
-  uint mode;
-  float alpha, cutoff, transmission, metallic;
-  Picture base, metal, glass;
-};
-struct SeeThroughTriangle {
-  uint instance, triangle, material;
-  uint placed;  // bits 0 to 2: base, metal, glass
-  vec2 base[3], metal[3], glass[3];
-  float alpha[3];
-};
-layout(buffer_reference, scalar) readonly buffer SeeThroughMaterials { SeeThroughMaterial at[]; };
-layout(buffer_reference, scalar) readonly buffer SeeThroughTriangles { SeeThroughTriangle at[]; };
-
-struct SeeThrough {
-  SeeThroughMaterials materials;
-  SeeThroughTriangles triangles;
-  Texels texels;
-};
 
 const uint kMask = 1, kBlend = 2;    // scene::AlphaMode
 

@@ -4,6 +4,9 @@
 #include "luxel/base/both_language.h"
 BOTH_BEGIN
 
+// Groups among which light is shared out by their importance, at most.
+const uint kMaxCut = 16;
+
 // Members of light::LightNode, which says what they mean.
 struct LightGroup {
   vec3 centre;

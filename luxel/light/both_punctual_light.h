@@ -4,6 +4,9 @@
 #include "luxel/base/both_language.h"
 BOTH_BEGIN
 
+// Up to so many punctual lights each one gets its shadow ray; of more, so many are drawn.
+const uint kMaxAllPunctual = 64;
+
 // 1 / d^2 times the window of the range, 0: none.
 BOTH float share_at_distance(float distance_m, float range_m) {
   float share = 1 / (distance_m * distance_m);

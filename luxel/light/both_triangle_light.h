@@ -6,6 +6,9 @@
 #include "luxel/viewfactor/both_point_form_factor.h"
 BOTH_BEGIN
 
+// Up to so many triangles every one is looked at; of more, some are drawn.
+const uint kMaxAllTriangles = 32;
+
 // Corners counter-clockwise seen from the front, and what light::TriangleLight has of them.
 struct LightTriangle {
   vec3 a, b, c;

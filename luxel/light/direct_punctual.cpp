@@ -58,7 +58,7 @@ void aim_at_punctual(const Lights& lights, size_t index, float chance, int sampl
 void aim_at_punctual_lights(const Lights& lights, int samples, const Receiver& r,
                             ShadowRayBatch& batch) {
   const size_t count = lights.punctual.size();
-  if (count <= kMaxAllPunctual) {
+  if (count <= both::kMaxAllPunctual) {
     for (size_t i = 0; i < count; ++i) aim_at_punctual(lights, i, 1, samples, r, batch);
     return;
   }
@@ -73,7 +73,7 @@ void aim_at_punctual_lights(const Lights& lights, int samples, const Receiver& r
   };
   RandomStream random{hash64(r.seed, 0x12)};
   draw_lights(lights.punctual_nodes, r.position, r.normal, leaf,
-              {.samples = int(kMaxAllPunctual), .start = random.next()}, batch.draws);
+              {.samples = int(both::kMaxAllPunctual), .start = random.next()}, batch.draws);
   for (const LightDraw& draw : batch.draws.draws)
     aim_at_punctual(lights, lights.punctual_order[draw.light], draw.chance, samples, r, batch);
 }

@@ -82,7 +82,7 @@ void aim_at_drawn_triangles(const DirectScene& lit, int samples, const Receiver&
   RandomStream random{hash64(r.seed, 0x11)};
   // A cut shares several rays out better; for a single one the way down from the root is enough.
   const DrawParams params{
-      .samples = samples, .max_cut = samples == 1 ? 1u : 16u, .start = random.next()};
+      .samples = samples, .max_cut = samples == 1 ? 1u : both::kMaxCut, .start = random.next()};
   draw_lights(lit.lights.nodes, r.position, r.normal, leaf, params, batch.draws);
   for (const LightDraw& draw : batch.draws.draws) {
     if (draw.chance < 1) {
@@ -148,7 +148,7 @@ void aim_at_all_triangles(const DirectScene& lit, int samples, const Receiver& r
 void aim_at_triangles(const DirectScene& lit, int samples, const Receiver& r,
                       ShadowRayBatch& batch) {
   if (lit.lights.triangles.empty()) return;
-  if (lit.lights.triangles.size() <= kMaxAllTriangles)
+  if (lit.lights.triangles.size() <= both::kMaxAllTriangles)
     aim_at_all_triangles(lit, samples, r, batch);
   else
     aim_at_drawn_triangles(lit, samples, r, batch);

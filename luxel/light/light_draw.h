@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/light/both_light_group.h"
 #include "luxel/light/light_tree.h"
 
 namespace luxel::light {
@@ -31,9 +32,9 @@ struct LightDraws {
 };
 
 struct DrawParams {
-  int samples = 64;     ///< rays to share out: in the mean, as many are drawn
-  size_t max_cut = 16;  ///< groups among which light is shared out by their importance
-  float start = 0;      ///< random, in [0, 1)
+  int samples = 64;                ///< rays to share out: in the mean, as many are drawn
+  size_t max_cut = both::kMaxCut;  ///< groups among which light is shared out by their importance
+  float start = 0;                 ///< random, in [0, 1)
 };
 
 /// Importance of a single light, like that of a group (importance_at): zero only where nothing can

@@ -15,11 +15,6 @@
 
 namespace luxel::light {
 
-/// Up to so many triangles every one is looked at; of more, some are drawn.
-inline constexpr size_t kMaxAllTriangles = 32;
-/// Up to so many punctual lights each one gets its shadow ray; of more, so many are drawn.
-inline constexpr size_t kMaxAllPunctual = 64;
-
 /// The scene that shadow rays cross, and the lights that they aim at.
 struct DirectScene {
   const scene::Scene& scene;

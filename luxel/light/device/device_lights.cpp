@@ -5,64 +5,20 @@
 #include <cmath>
 
 #include "luxel/base/check.h"
+#include "luxel/light/device/direct_light_shared.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/trace/vulkan/device_pictures.h"
 
 namespace luxel::light {
 namespace {
 
-// Structs of shaders/lights.glsl.
-
-struct DeviceTriangleLight {
-  Vec3 a, b, c, normal;
-  Rgb radiance;
-  float area_m2, size_m;
-  uint32_t instance, triangle, piece;
-  uint32_t two_sided;
-  uint32_t texture = 0;  ///< 1 + the number of a LightTexture; 0: it is even
-};
-static_assert(sizeof(DeviceTriangleLight) == 88);
-static_assert(sizeof(LightNode) == 76);
-
-struct DevicePunctualLight {
-  Rgb intensity;
-  Vec3 position, direction;
-  float range_m, cos_inner, cos_outer;
-  float disc_height;
-  uint32_t kind, has_disc;
-  Vec3 side;
-  uint32_t profile;  ///< 1 + its number; 0: none
-};
-static_assert(sizeof(DevicePunctualLight) == 76);
-
-/// The emission of a triangle light.
-struct LightTexture {
-  Rgb emission;
-  on_device::PlacedPicture picture;  ///< its places are those of a, b and c
-};
-static_assert(sizeof(LightTexture) == 64);
-
-struct DeviceProfile {
-  uint32_t angles, vertical, horizontal;  ///< how many of both
-  uint32_t first;  ///< of its values: vertical angles, horizontal ones, candela
-};
+static_assert(sizeof(LightNode) == 76);  // as shaders/lights.glsl reads it
 static_assert(int(scene::LightProfile::Angles::c) == 0 &&
               int(scene::LightProfile::Angles::b) == 1 && int(scene::LightProfile::Angles::a) == 2);
 static_assert(int(scene::LightKind::point) == 0 && int(scene::LightKind::spot) == 1 &&
               int(scene::LightKind::directional) == 2);
 
-struct Setup {
-  on_device::World world;
-  VkDeviceAddress triangles, nodes, textures, texels, linear_of_byte;
-  VkDeviceAddress punctual, punctual_order, punctual_nodes, profiles, profile_values;
-  VkDeviceAddress bright_texels, guide, below, row_cosine, pixels;
-  float rotation_rad;
-  int32_t map_width;
-  uint32_t triangle_count, punctual_count, bright_count;
-};
-static_assert(sizeof(Setup) == 184);
-
-DeviceTriangleLight device_light(const TriangleLight& light) {
+on_device::TriangleLight device_light(const TriangleLight& light) {
   return {light.a,
           light.b,
           light.c,
@@ -73,10 +29,11 @@ DeviceTriangleLight device_light(const TriangleLight& light) {
           light.instance,
           light.triangle,
           light.piece,
-          uint32_t(light.two_sided)};
+          uint32_t(light.two_sided),
+          0};
 }
 
-DevicePunctualLight device_light(const scene::PunctualLight& light) {
+on_device::PunctualLight device_light(const scene::PunctualLight& light) {
   // 1 - cos(angle) without cancellation.
   const float s = std::sin(0.5f * light.angular_radius_rad);
   return {light.intensity,
@@ -108,12 +65,12 @@ const scene::Material& material_of(const scene::Scene& scene, const TriangleLigh
   return scene::material_at(scene, {light.instance, light.triangle, {}});
 }
 
-LightTexture light_texture(const scene::Scene& scene, const TriangleLight& light,
-                           trace::DevicePictures& pictures) {
+on_device::LightTexture light_texture(const scene::Scene& scene, const TriangleLight& light,
+                                      trace::DevicePictures& pictures) {
   const scene::Material& material = material_of(scene, light);
   const scene::Mesh& mesh = scene.meshes[scene.instances[light.instance].mesh];
-  LightTexture out{material.emission,
-                   pictures.placed(mesh, light.triangle, material.emission_texture)};
+  on_device::LightTexture out{material.emission,
+                              pictures.placed(mesh, light.triangle, material.emission_texture)};
   const std::array<Vec2, 3> corners = out.picture.places;
   for (size_t k = 0; k < 3; ++k) {
     Barycentric at = light.part[k];
@@ -127,16 +84,16 @@ Status upload_triangles(gpu::Commands& commands, const scene::Scene& scene, cons
                         DeviceLights& out) {
   std::vector<uint32_t> texels;
   trace::DevicePictures pictures(scene, texels);
-  std::vector<LightTexture> textures;
-  std::vector<DeviceTriangleLight> triangles;
+  std::vector<on_device::LightTexture> textures;
+  std::vector<on_device::TriangleLight> triangles;
   for (const TriangleLight& light : lights.triangles) {
     triangles.push_back(device_light(light));
     if (!light.textured) continue;
     textures.push_back(light_texture(scene, light, pictures));
-    triangles.back().texture = uint32_t(textures.size());
+    triangles.back().texture_number = uint32_t(textures.size());
   }
-  LUXEL_TRY(out.triangles, uploaded<DeviceTriangleLight>(commands, triangles));
-  LUXEL_TRY(out.textures, uploaded<LightTexture>(commands, textures));
+  LUXEL_TRY(out.triangles, uploaded<on_device::TriangleLight>(commands, triangles));
+  LUXEL_TRY(out.textures, uploaded<on_device::LightTexture>(commands, textures));
   LUXEL_TRY(out.texels, uploaded<uint32_t>(commands, texels));
   const std::array<float, 256> linear = trace::linear_of_bytes();
   LUXEL_TRY(out.linear_of_byte, uploaded<float>(commands, linear));
@@ -144,7 +101,7 @@ Status upload_triangles(gpu::Commands& commands, const scene::Scene& scene, cons
 }
 
 Status upload_profiles(gpu::Commands& commands, const Lights& lights, DeviceLights& out) {
-  std::vector<DeviceProfile> profiles;
+  std::vector<on_device::LightProfile> profiles;
   std::vector<float> values;
   for (const scene::LightProfile& p : lights.profiles) {
     profiles.push_back({uint32_t(p.angles), uint32_t(p.vertical_rad.size()),
@@ -152,7 +109,7 @@ Status upload_profiles(gpu::Commands& commands, const Lights& lights, DeviceLigh
     for (const auto* some : {&p.vertical_rad, &p.horizontal_rad, &p.candela})
       values.insert(values.end(), some->begin(), some->end());
   }
-  LUXEL_TRY(out.profiles, uploaded<DeviceProfile>(commands, profiles));
+  LUXEL_TRY(out.profiles, uploaded<on_device::LightProfile>(commands, profiles));
   LUXEL_TRY(out.profile_values, uploaded<float>(commands, values));
   return {};
 }
@@ -182,33 +139,33 @@ Result<DeviceLights> upload_lights(gpu::Commands& commands, const trace::DeviceR
   LUXEL_TRY_STATUS(upload_triangles(commands, scene, lights, out));
   LUXEL_TRY_STATUS(upload_profiles(commands, lights, out));
   LUXEL_TRY(out.nodes, uploaded<LightNode>(commands, lights.nodes));
-  LUXEL_TRY(out.punctual,
-            (uploaded_as<DevicePunctualLight, scene::PunctualLight>(commands, lights.punctual)));
+  LUXEL_TRY(out.punctual, (uploaded_as<on_device::PunctualLight, scene::PunctualLight>(
+                              commands, lights.punctual)));
   LUXEL_TRY(out.punctual_order, uploaded<uint32_t>(commands, lights.punctual_order));
   LUXEL_TRY(out.punctual_nodes, uploaded<LightNode>(commands, lights.punctual_nodes));
   LUXEL_TRY_STATUS(upload_surroundings(commands, scene, lights.around, out));
-  const Setup setup{.world = tracer.world(),
-                    .triangles = out.triangles.address,
-                    .nodes = out.nodes.address,
-                    .textures = out.textures.address,
-                    .texels = out.texels.address,
-                    .linear_of_byte = out.linear_of_byte.address,
-                    .punctual = out.punctual.address,
-                    .punctual_order = out.punctual_order.address,
-                    .punctual_nodes = out.punctual_nodes.address,
-                    .profiles = out.profiles.address,
-                    .profile_values = out.profile_values.address,
-                    .bright_texels = out.bright_texels.address,
-                    .guide = out.guide.address,
-                    .below = out.below.address,
-                    .row_cosine = out.row_cosine.address,
-                    .pixels = out.pixels.address,
-                    .rotation_rad = scene.environment.rotation_rad,
-                    .map_width = scene.environment.width,
-                    .triangle_count = uint32_t(lights.triangles.size()),
-                    .punctual_count = uint32_t(lights.punctual.size()),
-                    .bright_count = uint32_t(lights.around.bright_texels.size())};
-  LUXEL_TRY(out.setup, uploaded<Setup>(commands, std::span(&setup, 1)));
+  const on_device::LightSetup setup{.world = tracer.world(),
+                                    .triangles = out.triangles.address,
+                                    .nodes = out.nodes.address,
+                                    .textures = out.textures.address,
+                                    .texels = out.texels.address,
+                                    .linear_of_byte = out.linear_of_byte.address,
+                                    .punctual = out.punctual.address,
+                                    .punctual_order = out.punctual_order.address,
+                                    .punctual_nodes = out.punctual_nodes.address,
+                                    .profiles = out.profiles.address,
+                                    .profile_values = out.profile_values.address,
+                                    .bright_texels = out.bright_texels.address,
+                                    .guide = out.guide.address,
+                                    .below = out.below.address,
+                                    .row_cosine = out.row_cosine.address,
+                                    .pixels = out.pixels.address,
+                                    .rotation_rad = scene.environment.rotation_rad,
+                                    .map_width = scene.environment.width,
+                                    .triangle_count = uint32_t(lights.triangles.size()),
+                                    .punctual_count = uint32_t(lights.punctual.size()),
+                                    .bright_count = uint32_t(lights.around.bright_texels.size())};
+  LUXEL_TRY(out.setup, uploaded<on_device::LightSetup>(commands, std::span(&setup, 1)));
   return out;
 }
 

@@ -4,63 +4,32 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/light/both_punctual_light.h"
+#include "luxel/light/both_triangle_light.h"
+#include "luxel/light/device/direct_light_shared.h"
 #include "luxel/light/device/shaders/direct_light.comp.h"
 #include "luxel/light/shadow_rays.h"
 
 namespace luxel::light {
 namespace {
 
-constexpr size_t kGroup = 64;  // as the shaders have it
 /// Groups of receivers, each with any number of rays.
 constexpr gpu::PieceSize kFirstPiece{64};
 /// Receivers that are sent at a time: 11 MB.
 constexpr size_t kReceiversAtATime = size_t(1) << 18;
 
-// Structs of shaders/shadow_rays.glsl.
-
-struct DeviceReceiver {
-  Vec3 position, normal, geometric_normal;
-  uint32_t seed_low, seed_high;
-};
-static_assert(sizeof(DeviceReceiver) == 44);
-
-struct DeviceLightAt {
-  Rgb irradiance;
-  float variance, split_variance;
-  uint32_t rays;
-};
-static_assert(sizeof(DeviceLightAt) == 24);
-
-struct DirectPush {
-  VkDeviceAddress setup, receivers, light;
-  uint32_t count, samples;
-  uint32_t first_group = 0;
-  uint32_t unused = 0;
-};
-
-/// The kinds of sources, each of which a device takes in a step of its own.
-enum class DirectStep : uint8_t {
-  all_triangles,
-  drawn_triangles,
-  punctual_lights,
-  drawn_punctual_lights,
-  bright_texels
-};
-
-// These numbers stand in shaders/direct_light.glsl and draw_lights.glsl, too: an array has room for
-// so many.
-static_assert(kMaxAllTriangles == 32 && kMaxAllPunctual == 64 && DrawParams{}.max_cut == 16);
+using on_device::DirectPush, on_device::kDirectThreads;
 
 /// Steps that a scene's lights need.
-std::vector<DirectStep> steps_of(const Lights& lights) {
-  std::vector<DirectStep> out;
+std::vector<uint32_t> steps_of(const Lights& lights) {
+  std::vector<uint32_t> out;
   if (!lights.triangles.empty())
-    out.push_back(lights.triangles.size() <= kMaxAllTriangles ? DirectStep::all_triangles
-                                                              : DirectStep::drawn_triangles);
-  if (!lights.punctual.empty()) out.push_back(DirectStep::punctual_lights);
-  if (lights.punctual.size() > kMaxAllPunctual && !lights.punctual_nodes.empty())
-    out.push_back(DirectStep::drawn_punctual_lights);
-  if (!lights.around.bright_texels.empty()) out.push_back(DirectStep::bright_texels);
+    out.push_back(lights.triangles.size() <= both::kMaxAllTriangles ? on_device::kAllTriangles
+                                                                    : on_device::kDrawnTriangles);
+  if (!lights.punctual.empty()) out.push_back(on_device::kPunctualLights);
+  if (lights.punctual.size() > both::kMaxAllPunctual && !lights.punctual_nodes.empty())
+    out.push_back(on_device::kDrawnPunctualLights);
+  if (!lights.around.bright_texels.empty()) out.push_back(on_device::kBrightTexels);
   return out;
 }
 
@@ -70,14 +39,13 @@ Status DeviceDirectLight::make_steps(const trace::DeviceRayTracer& tracer, const
   const gpu::Spirv shader = direct_light_comp(tracer.kind());
   const bool all_even =
       std::ranges::none_of(lights.triangles, &TriangleLight::textured) && lights.profiles.empty();
-  for (const DirectStep step : steps_of(lights)) {
+  for (const uint32_t step : steps_of(lights)) {
     steps_.emplace_back();
     steps_.back().is_punctual =
-        step == DirectStep::punctual_lights || step == DirectStep::drawn_punctual_lights;
-    LUXEL_TRY(
-        steps_.back().pipeline,
-        gpu::make_compute_pipeline(commands_->device(), shader, {sizeof(DirectPush), {}},
-                                   {tracer.shader_constant(), uint32_t(step), uint32_t(all_even)}));
+        step == on_device::kPunctualLights || step == on_device::kDrawnPunctualLights;
+    LUXEL_TRY(steps_.back().pipeline,
+              gpu::make_compute_pipeline(commands_->device(), shader, {sizeof(DirectPush), {}},
+                                         {tracer.shader_constant(), step, uint32_t(all_even)}));
   }
   return {};
 }
@@ -97,7 +65,7 @@ Status DeviceDirectLight::make_room(size_t count) {
   const gpu::Device& device = commands_->device();
   constexpr std::string_view kWhat = "the buffer of lit places";
   sent_ = {}, receivers_ = {}, light_ = {}, answered_ = {}, room_ = 0;
-  const size_t in = count * sizeof(DeviceReceiver), out = count * sizeof(DeviceLightAt);
+  const size_t in = count * sizeof(on_device::Receiver), out = count * sizeof(on_device::LightAt);
   LUXEL_TRY(sent_, gpu::make_buffer(device, in, gpu::Access::from_host, kWhat));
   LUXEL_TRY(receivers_, gpu::make_buffer(device, in, gpu::Access::device, kWhat));
   LUXEL_TRY(light_, gpu::make_buffer(device, out, gpu::Access::device, kWhat));
@@ -110,7 +78,8 @@ Status DeviceDirectLight::make_room(size_t count) {
 Status DeviceDirectLight::light_sent(size_t count, const LightAsked& asked,
                                      const Progress& progress) {
   const gpu::Device& device = commands_->device();
-  LUXEL_TRY_STATUS(gpu::copy_bytes(*commands_, sent_, receivers_, count * sizeof(DeviceReceiver)));
+  LUXEL_TRY_STATUS(
+      gpu::copy_bytes(*commands_, sent_, receivers_, count * sizeof(on_device::Receiver)));
   LUXEL_TRY_STATUS(commands_->run([&](VkCommandBuffer c) {
     device.vk.vkCmdFillBuffer(c, light_.buffer.get(), 0, VK_WHOLE_SIZE, 0);
   }));
@@ -118,16 +87,18 @@ Status DeviceDirectLight::light_sent(size_t count, const LightAsked& asked,
                         .receivers = receivers_.address,
                         .light = light_.address,
                         .count = uint32_t(count),
-                        .samples = uint32_t(asked.samples)};
+                        .samples = uint32_t(asked.samples),
+                        .first_group = 0};
   // Each step adds to what those before it have found.
   for (Step& step : steps_) {
     if (asked.punctual_alone && !step.is_punctual) continue;
     gpu::PieceSize& piece = step.pieces.try_emplace(asked.samples, kFirstPiece).first->second;
-    LUXEL_TRY(const double took, gpu::run_groups(*commands_, step.pipeline, push,
-                                                 (count + kGroup - 1) / kGroup, piece, &progress));
+    LUXEL_TRY(const double took,
+              gpu::run_groups(*commands_, step.pipeline, push,
+                              (count + kDirectThreads - 1) / kDirectThreads, piece, &progress));
     seconds_ += took;
   }
-  return gpu::copy_bytes(*commands_, light_, answered_, count * sizeof(DeviceLightAt));
+  return gpu::copy_bytes(*commands_, light_, answered_, count * sizeof(on_device::LightAt));
 }
 
 Result<uint64_t> DeviceDirectLight::light_at(std::span<const Receiver> receivers,
@@ -139,16 +110,15 @@ Result<uint64_t> DeviceDirectLight::light_at(std::span<const Receiver> receivers
     const auto these =
         receivers.subspan(first, std::min(kReceiversAtATime, receivers.size() - first));
     LUXEL_TRY_STATUS(make_room(these.size()));
-    auto* sent = reinterpret_cast<DeviceReceiver*>(sent_.mapped);
+    auto* sent = reinterpret_cast<on_device::Receiver*>(sent_.mapped);
     parallel_for(these.size(), 4096, [&](size_t begin, size_t end) {
       for (size_t k = begin; k < end; ++k) {
         const Receiver& r = these[k];
-        sent[k] = {r.position, r.normal, r.geometric_normal, uint32_t(r.seed),
-                   uint32_t(r.seed >> 32)};
+        sent[k] = {r.position, r.normal, r.geometric_normal, on_device::halves(r.seed)};
       }
     });
     LUXEL_TRY_STATUS(light_sent(these.size(), asked, progress));
-    const auto* light = reinterpret_cast<const DeviceLightAt*>(answered_.mapped);
+    const auto* light = reinterpret_cast<const on_device::LightAt*>(answered_.mapped);
     for (size_t k = 0; k < these.size(); ++k) {
       out[first + k] = {light[k].irradiance, light[k].variance, light[k].split_variance};
       rays += light[k].rays;

@@ -13,6 +13,7 @@
 #include "luxel/light/both_punctual_light.h"
 #include "luxel/light/both_triangle_light.h"
 #include "luxel/light/device/shaders/test_formulas.comp.h"
+#include "luxel/light/device/test_support_shared.h"
 #include "luxel/light/surroundings.h"
 
 namespace luxel::light {
@@ -20,23 +21,7 @@ namespace {
 
 constexpr uint32_t kInputs = 100'000;
 
-// Structs of shaders/test_formulas.comp.
-
-struct Question {
-  Vec3 a, b, c, light_normal;
-  Vec3 position, normal, geometric_normal, direction;
-  Vec2 u;
-  float angle, distance_m;
-};
-struct Answer {
-  Vec3 by_angle, by_area, column;
-  Vec2 at, angle;
-  float irradiance, weight_by_angle, measure_by_angle, weight_by_area;
-  float importance, at_distance, in_cone, folded, arc_tangent;
-  Vec3 in_disc;
-  double factor;
-};
-static_assert(sizeof(Question) == 112 && sizeof(Answer) == 112);
+using on_device::Answer, on_device::FormulaPush, on_device::Question;
 
 /// Triangles of all sizes about places in a cube of 2 m, some of them below the horizon.
 std::vector<Question> questions() {
@@ -45,7 +30,7 @@ std::vector<Question> questions() {
   const auto direction = [&] { return uniform_sphere_sample(random.next2()); };
   std::vector<Question> out;
   for (uint32_t i = 0; i < kInputs; ++i) {
-    Question q;
+    Question q{};
     const float size = std::exp2(-8 * random.next());
     q.a = anywhere(), q.b = q.a + direction() * size, q.c = q.a + direction() * size;
     q.light_normal = normalize(cross(q.b - q.a, q.c - q.a));
@@ -91,12 +76,9 @@ class Formulas : public gpu::testing::OnDevice {
     auto from = gpu::buffer_with(*device_, std::as_bytes(std::span(questions)), "questions");
     auto to =
         gpu::make_buffer(*device_, out.size() * sizeof(Answer), gpu::Access::to_host, "answers");
-    const struct Push {
-      VkDeviceAddress questions, answers;
-      uint32_t count, unused = 0;
-    } push{from->address, to->address, uint32_t(questions.size())};
+    const FormulaPush push{from->address, to->address, uint32_t(questions.size())};
     const auto pipeline =
-        gpu::make_compute_pipeline(*device_, test_formulas_comp, {sizeof(Push), {}});
+        gpu::make_compute_pipeline(*device_, test_formulas_comp, {sizeof(FormulaPush), {}});
     EXPECT_TRUE(pipeline) << pipeline.error().message;
     EXPECT_TRUE(commands_->run([&](VkCommandBuffer c) {
       gpu::bind(*device_, c, *pipeline, push);

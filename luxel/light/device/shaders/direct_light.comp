@@ -10,15 +10,9 @@
 #include "shadow_rays.glsl"
 #include "light_values.glsl"
 #include "draw_lights.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = kDirectThreads) in;
 
 layout(constant_id = 1) const uint kStep = 0;
-// DirectStep of ../direct_light_on_device.cpp
-const uint kAllTriangles = 0, kDrawnTriangles = 1, kPunctualLights = 2, kDrawnPunctualLights = 3, kBrightTexels = 4;
-// Up to so many triangles every one is looked at.
-const uint kMostTriangles = 32;
-// Up to so many punctual lights each one gets its shadow ray; of more, so many are drawn.
-const uint kMostPunctual = 64;
 
 // Traces shadow rays at a triangle: `count` points of it that lie above the horizon, or, of one that
 // stands for its neighbours, one at random.
@@ -52,7 +46,7 @@ Source exact_source(TriangleLight light, float whole, float chance, uint count) 
 
 // Few lights: rays are shared out in proportion to what each brings.
 void aim_at_all_triangles(Receiver r, inout Sum sum) {
-  float whole[kMostTriangles];
+  float whole[kMaxAllTriangles];
   float total = 0;
   uint shining = 0;
   for (uint i = 0; i < setup.triangle_count; ++i) {
@@ -81,7 +75,7 @@ void aim_at_all_triangles(Receiver r, inout Sum sum) {
 
 void aim_at_drawn_triangles(Receiver r, inout Sum sum) {
   float start = random_float(hash64(r.seed, uvec2(0x11, 0)));
-  Draws draws = begin_draws(false, samples, samples == 1 ? 1 : kMostCut, start, r);
+  Draws draws = begin_draws(false, samples, samples == 1 ? 1 : kMaxCut, start, r);
   Draw draw;
   while (next_draw(draws, r, draw)) {
     TriangleLight light = setup.triangles.at[draw.leaf];
@@ -127,14 +121,14 @@ void aim_at_punctual(uint number, float chance, Receiver r, inout Sum sum) {
 
 // All of them, or, of many, those without a place.
 void aim_at_punctual_lights(Receiver r, inout Sum sum) {
-  bool all = setup.punctual_count <= kMostPunctual;
+  bool all = setup.punctual_count <= kMaxAllPunctual;
   for (uint i = 0; i < setup.punctual_count; ++i)
     if (all || setup.punctual.at[i].kind == kDirectional) aim_at_punctual(i, 1, r, sum);
 }
 
 void aim_at_drawn_punctual_lights(Receiver r, inout Sum sum) {
   float start = random_float(hash64(r.seed, uvec2(0x12, 0)));
-  Draws draws = begin_draws(true, kMostPunctual, kMostCut, start, r);
+  Draws draws = begin_draws(true, kMaxAllPunctual, kMaxCut, start, r);
   Draw draw;
   while (next_draw(draws, r, draw)) aim_at_punctual(setup.punctual_order.at[draw.leaf], draw.chance, r, sum);
 }
@@ -170,7 +164,7 @@ void aim_at_bright_texels(Receiver r, inout Sum sum) {
 }
 
 void main() {
-  uint i = (first_group + gl_WorkGroupID.x) * 64 + gl_LocalInvocationID.x;
+  uint i = (first_group + gl_WorkGroupID.x) * kDirectThreads + gl_LocalInvocationID.x;
   if (i >= count) return;
   Receiver r = receivers.at[i];
   Sum sum = Sum(light.at[i], 0, 0, 0);

@@ -1,7 +1,6 @@
 // Some of many lights, in proportion to what they bring: luxel/light/light_draw.h. The lights lie on
 // a line; draws come one after the other, so that a shader has one place where it traces them.
 
-const uint kMostCut = 16;
 // The tree is halved by number: it has fewer levels than this.
 const int kDeepest = 32;
 
@@ -25,7 +24,7 @@ struct Part {
 // Where a receiver is among its draws.
 struct Draws {
   bool punctual;  // of point and spot lights; else of triangles
-  CutEntry cut[kMostCut];
+  CutEntry cut[kMaxCut];
   uint cut_size, next;
   bool on_line;  // after the lights that are drawn for certain
   double per_ray, rays, rest, begin;

@@ -1,22 +1,10 @@
-// What shines in a scene: ../device_lights.cpp has the structs.
+// What shines in a scene.
 #include "luxel/base/both_sobol.h"
 #include "luxel/light/both_bright_texel.h"
 #include "luxel/light/both_light_group.h"
 #include "luxel/light/both_triangle_light.h"
 #include "luxel/trace/vulkan/shaders/frame.glsl"
 
-struct TriangleLight {
-  vec3 a, b, c, normal;
-  vec3 radiance;
-  float area_m2, size_m;
-  uint instance, triangle, piece;
-  uint two_sided;
-  uint texture_number;  // 1 + that of a LightTexture; 0: it is even
-};
-struct LightTexture {
-  vec3 emission;
-  PlacedPicture picture;
-};
 // light::LightNode
 struct LightNode {
   vec3 centre;
@@ -28,49 +16,10 @@ struct LightNode {
   uint first, count;
   uint right_child;  // 0: a leaf
 };
-const uint kPoint = 0, kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
-struct PunctualLight {
-  vec3 intensity, position, direction;
-  float range_m, cos_inner, cos_outer;
-  float disc_height;  // 1 - cos(half of the disc's angle)
-  uint kind, has_disc;
-  vec3 side;
-  uint profile;  // 1 + its number; 0: none
-};
-// scene::LightProfile; its values: vertical angles, horizontal ones, candela
-struct LightProfile {
-  uint angles, vertical, horizontal;
-  uint first;
-};
-layout(buffer_reference, scalar) readonly buffer TriangleLights { TriangleLight at[]; };
-layout(buffer_reference, scalar) readonly buffer LightTextures { LightTexture at[]; };
-layout(buffer_reference, scalar) readonly buffer LightProfiles { LightProfile at[]; };
-layout(buffer_reference, scalar) readonly buffer LightNodes { LightNode at[]; };
-layout(buffer_reference, scalar) readonly buffer PunctualLights { PunctualLight at[]; };
-layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
-layout(buffer_reference, scalar) readonly buffer Doubles { double at[]; };
-layout(buffer_reference, scalar) readonly buffer Pixels { vec3 at[]; };
+IN_BUFFER(LightNodes, LightNode);
+#include "luxel/light/device/direct_light_shared.h"
 
-layout(buffer_reference, scalar) buffer Setup {
-  World world;
-  TriangleLights triangles;  // in the order of the leaves of nodes
-  LightNodes nodes;
-  LightTextures textures;
-  Texels texels;
-  Floats linear_of_byte;
-  PunctualLights punctual;
-  Numbers punctual_order;  // leaves of punctual_nodes
-  LightNodes punctual_nodes;
-  LightProfiles profiles;
-  Floats profile_values;
-  // light::Surroundings, and its map.
-  Numbers bright_texels, guide;
-  Doubles below, row_cosine;
-  Pixels pixels;
-  float rotation_rad;
-  int map_width;
-  uint triangle_count, punctual_count, bright_count;
-};
+const uint kPoint = 0, kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
 
 LightTriangle triangle_of(TriangleLight light) {
   return LightTriangle(light.a, light.b, light.c, light.normal, light.area_m2, light.two_sided != 0);

@@ -1,28 +1,5 @@
 // Shadow rays of a place and what they are worth: luxel/light/shadow_rays.h.
 
-// A place that is lit: light::Receiver.
-struct Receiver {
-  vec3 position, normal, geometric_normal;
-  uvec2 seed;
-};
-layout(buffer_reference, scalar) readonly buffer Receivers { Receiver at[]; };
-
-// light::LightAt, and the number of shadow rays.
-struct LightAt {
-  vec3 irradiance;
-  float variance, split_variance;
-  uint rays;
-};
-layout(buffer_reference, scalar) buffer AllLight { LightAt at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  Setup setup;
-  Receivers receivers;
-  AllLight light;
-  uint count, samples;
-  uint first_group;
-};
-
 // light::Source
 struct Source {
   bool exact, drawn;

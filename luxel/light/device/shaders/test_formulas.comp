@@ -1,37 +1,14 @@
 // What the formulas of luxel/light/both_*.h and luxel/base/both_angle.h are on a device, for inputs
 // of ../formulas_test.cpp.
 #version 460
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/base/both_directions.h"
 #include "luxel/light/both_bright_texel.h"
 #include "luxel/light/both_light_group.h"
 #include "luxel/light/both_punctual_light.h"
 #include "luxel/light/both_triangle_light.h"
+#include "luxel/light/device/test_support_shared.h"
 layout(local_size_x = 64) in;
-
-struct Question {
-  vec3 a, b, c, light_normal;
-  vec3 position, normal, geometric_normal, direction;
-  vec2 u;
-  float angle, distance_m;
-};
-struct Answer {
-  vec3 by_angle, by_area, column;
-  vec2 at, angle;
-  float irradiance, weight_by_angle, measure_by_angle, weight_by_area;
-  float importance, at_distance, in_cone, folded, arc_tangent;
-  vec3 in_disc;
-  double factor;
-};
-layout(buffer_reference, scalar) readonly buffer Questions { Question at[]; };
-layout(buffer_reference, scalar) writeonly buffer Answers { Answer at[]; };
-layout(push_constant, scalar) uniform Push {
-  Questions questions;
-  Answers answers;
-  uint count;
-};
 
 void main() {
   uint i = gl_GlobalInvocationID.x;

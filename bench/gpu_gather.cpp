@@ -62,7 +62,7 @@ Result<Swept> sweep_on_processor(const gather::RadiosityMap& map, const gather::
 /// The fastest of sweeps that take `least_s` together.
 Result<Swept> sweep_on_device(gpu::Commands& commands, device::LandedRays& rays,
                               const gather::RadiosityMap& map, int samples, double least_s) {
-  std::vector<device::DeviceGathered> gathered(rays.element_count);
+  std::vector<on_device::Gathered> gathered(rays.element_count);
   Swept out;
   out.seconds = INFINITY;
   const auto start = Clock::now();
@@ -70,7 +70,7 @@ Result<Swept> sweep_on_device(gpu::Commands& commands, device::LandedRays& rays,
     LUXEL_TRY(const double seconds, device::sweep(commands, rays, map, gathered));
     out.seconds = std::min(out.seconds, seconds);
   } while (seconds_since(start) < least_s);
-  for (const device::DeviceGathered& g : gathered)
+  for (const on_device::Gathered& g : gathered)
     out.light.push_back(luminance(g.sum) / float(samples));
   return out;
 }

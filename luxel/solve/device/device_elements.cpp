@@ -3,18 +3,8 @@
 #include "luxel/base/parallel.h"
 
 namespace luxel::device {
-namespace {
-
-/// Element in element_rays.glsl.
-struct DeviceElement {
-  Vec3 origin, normal, geometric_normal;
-};
-static_assert(sizeof(DeviceElement) == 36);
-
-}  // namespace
-
 Result<gpu::Buffer> upload_elements(gpu::Commands& commands, const transport::Elements& elements) {
-  std::vector<DeviceElement> values(elements.size());
+  std::vector<on_device::Element> values(elements.size());
   parallel_for(values.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       values[i] = {elements.position[i], elements.normal[i], elements.geometric_normal[i]};

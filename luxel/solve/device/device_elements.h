@@ -2,13 +2,13 @@
 #pragma once
 
 #include "luxel/gpu/commands.h"
+#include "luxel/solve/device/rays_shared.h"
 #include "luxel/solve/gather/rays/element_rays.h"
 #include "luxel/transport/elements.h"
 
 namespace luxel::device {
 
-/// Elements, or slots of rays, whose rays of a cell of directions are traced together.
-inline constexpr size_t kTogether = 64;
+inline constexpr size_t kTogether = on_device::kRaysTogether;
 
 /// Some elements. Errors: no memory, the device is lost.
 Result<gpu::Buffer> upload_elements(gpu::Commands& commands, const transport::Elements& elements);

@@ -9,6 +9,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/device/device_surroundings.h"
+#include "luxel/solve/device/look_shared.h"
 #include "luxel/solve/device/shaders/hemicubes.comp.h"
 #include "luxel/solve/hemicube/item_buffer.h"
 #include "luxel/trace/vulkan/device_pictures.h"
@@ -24,55 +25,11 @@ constexpr size_t kSharesAtATime = size_t(1) << 24;
 /// Viewpoints at a time, at most, and their rays: progress moves on after them.
 constexpr size_t kMostAtATime = 4096, kMostRaysAtATime = size_t(1) << 26;
 
-// Structs of shaders/hemicubes.glsl.
-
-struct DevicePixel {
-  Vec3 direction;
-  float factor;
-  uint32_t weight;
-};
-struct DeviceViewpoint {
-  Vec3 tangent, bitangent, normal;
-  Vec3 origin;
-  Vec3 geometric_normal;
-};
-struct SeenTriangle {
-  uint32_t first_root, grid;
-  uint32_t other_side;
-  uint32_t flags;
-  Rgb emission;
-  uint32_t picture = 0;  ///< 1 + a number of SeenScene::pictures; 0: none
-
-  static constexpr uint32_t kTwoSided = 1, kEmissive = 2;
-};
-struct DeviceNode {
-  std::array<Vec2, 3> at;
-  std::array<uint32_t, 3> element;
-  uint32_t child;
-};
-struct DeviceView {
-  Rgb emitted;
-  uint32_t back, two_sided_back;
-};
-struct LookSetup {
-  on_device::World world;
-  VkDeviceAddress triangles, nodes, pixels, around;
-  VkDeviceAddress pictures, texels, linear_of_byte;
-  uint32_t pixel_count, element_count;
-  uint32_t per_vertex;
-  uint32_t unused = 0;
-};
-struct LookPush {
-  VkDeviceAddress setup, from, views, shares;
-  uint32_t first_group = 0, unused = 0;
-};
-static_assert(sizeof(DevicePixel) == 20 && sizeof(DeviceViewpoint) == 60);
-static_assert(sizeof(SeenTriangle) == 32 && sizeof(DeviceNode) == 40 && sizeof(DeviceView) == 20);
-static_assert(sizeof(LookSetup) == 112);
+using on_device::LookPush, on_device::LookSetup, on_device::SeenTriangle;
 
 /// Factors as whole numbers: what rounding takes from one the next gets.
-std::vector<DevicePixel> device_pixels(std::span<const hemicube::Pixel> pixels) {
-  std::vector<DevicePixel> out;
+std::vector<on_device::Pixel> device_pixels(std::span<const hemicube::Pixel> pixels) {
+  std::vector<on_device::Pixel> out;
   double below = 0;
   uint64_t given = 0;
   for (const hemicube::Pixel& p : pixels) {
@@ -103,9 +60,10 @@ void add_seen(const hemicube::Senders& s, uint32_t instance, uint32_t triangle,
        .grid = s.mesh.grid[instance],
        .other_side = is_sheet ? s.mesh.first_triangle[instance] + mesh.other_side[triangle]
                               : on_device::kNoTriangle,
-       .flags = (scene::reflects_from_behind(m) ? SeenTriangle::kTwoSided : 0) |
-                (shines ? SeenTriangle::kEmissive : 0),
-       .emission = m.emission});
+       .flags = (scene::reflects_from_behind(m) ? on_device::kTwoSided : 0) |
+                (shines ? on_device::kEmissive : 0),
+       .emission = m.emission,
+       .picture = 0});
   if (!shines || m.emission_texture.texture == scene::kNone) return;
   out.pictures.push_back(pictures.placed(mesh, triangle, m.emission_texture));
   out.triangles.back().picture = uint32_t(out.pictures.size());
@@ -121,13 +79,13 @@ SeenScene seen_scene(const hemicube::Senders& s) {
   return out;
 }
 
-std::vector<DeviceNode> device_nodes(const hemicube::Senders& s) {
+std::vector<on_device::Node> device_nodes(const hemicube::Senders& s) {
   const bool per_vertex = s.receivers.kind == hemicube::ElementKind::vertex;
-  std::vector<DeviceNode> out;
+  std::vector<on_device::Node> out;
   out.reserve(s.mesh.nodes.size());
   for (uint32_t i = 0; i < s.mesh.nodes.size(); ++i) {
     const hemicube::Node& node = s.mesh.nodes[i];
-    DeviceNode& to = out.emplace_back();
+    on_device::Node& to = out.emplace_back();
     for (size_t k = 0; k < 3; ++k) to.at[k] = {node.at[k].u, node.at[k].v};
     to.child = node.child;
     if (per_vertex)
@@ -138,7 +96,7 @@ std::vector<DeviceNode> device_nodes(const hemicube::Senders& s) {
   return out;
 }
 
-DeviceViewpoint device_viewpoint(const hemicube::Viewpoint& from) {
+on_device::Viewpoint device_viewpoint(const hemicube::Viewpoint& from) {
   const Frame frame = hemicube::frame_of_cube(from.normal);
   return {frame.tangent, frame.bitangent, frame.normal, from.position, from.geometric_normal};
 }
@@ -176,11 +134,13 @@ Status make_room(Looking& l) {
   constexpr std::string_view kWhat = "the buffer of hemicubes";
   const size_t n = l.at_a_time, shares = n * l.elements * sizeof(uint32_t);
   using gpu::Access;
-  LUXEL_TRY(l.from, gpu::make_buffer(device, n * sizeof(DeviceViewpoint), Access::device, kWhat));
+  LUXEL_TRY(l.from,
+            gpu::make_buffer(device, n * sizeof(on_device::Viewpoint), Access::device, kWhat));
   LUXEL_TRY(l.from_sent,
-            gpu::make_buffer(device, n * sizeof(DeviceViewpoint), Access::from_host, kWhat));
-  LUXEL_TRY(l.views, gpu::make_buffer(device, n * sizeof(DeviceView), Access::device, kWhat));
-  LUXEL_TRY(l.views_back, gpu::make_buffer(device, n * sizeof(DeviceView), Access::to_host, kWhat));
+            gpu::make_buffer(device, n * sizeof(on_device::Viewpoint), Access::from_host, kWhat));
+  LUXEL_TRY(l.views, gpu::make_buffer(device, n * sizeof(on_device::View), Access::device, kWhat));
+  LUXEL_TRY(l.views_back,
+            gpu::make_buffer(device, n * sizeof(on_device::View), Access::to_host, kWhat));
   LUXEL_TRY(l.shares, gpu::make_buffer(device, shares, Access::device, kWhat));
   LUXEL_TRY(l.shares_back, gpu::make_buffer(device, shares, Access::to_host, kWhat));
   return {};
@@ -218,18 +178,18 @@ Status prepare(const hemicube::Senders& s, const trace::DeviceRayTracer& tracer,
 Result<double> look_from(std::span<const hemicube::Viewpoint> from, LookShader& shader, Looking& l,
                          const Progress& progress) {
   const gpu::Device& device = l.commands.device();
-  auto* sent = reinterpret_cast<DeviceViewpoint*>(l.from_sent.mapped);
+  auto* sent = reinterpret_cast<on_device::Viewpoint*>(l.from_sent.mapped);
   for (size_t i = 0; i < from.size(); ++i) sent[i] = device_viewpoint(from[i]);
   LUXEL_TRY_STATUS(
-      gpu::copy_bytes(l.commands, l.from_sent, l.from, from.size() * sizeof(DeviceViewpoint)));
+      gpu::copy_bytes(l.commands, l.from_sent, l.from, from.size() * sizeof(on_device::Viewpoint)));
   LUXEL_TRY_STATUS(l.commands.run([&](VkCommandBuffer c) {
     device.vk.vkCmdFillBuffer(c, l.shares.buffer.get(), 0, VK_WHOLE_SIZE, 0);
   }));
-  const LookPush push{l.setup.address, l.from.address, l.views.address, l.shares.address};
+  const LookPush push{l.setup.address, l.from.address, l.views.address, l.shares.address, 0};
   LUXEL_TRY(const double seconds, gpu::run_groups(l.commands, shader.pipeline, push, from.size(),
                                                   shader.piece, &progress));
   LUXEL_TRY_STATUS(
-      gpu::copy_bytes(l.commands, l.views, l.views_back, from.size() * sizeof(DeviceView)));
+      gpu::copy_bytes(l.commands, l.views, l.views_back, from.size() * sizeof(on_device::View)));
   LUXEL_TRY_STATUS(gpu::copy_bytes(l.commands, l.shares, l.shares_back,
                                    from.size() * l.elements * sizeof(uint32_t)));
   return seconds;
@@ -237,7 +197,7 @@ Result<double> look_from(std::span<const hemicube::Viewpoint> from, LookShader& 
 
 /// Reads back the view from the k-th viewpoint.
 void take_view(const Looking& l, size_t k, hemicube::View& view) {
-  const DeviceView& found = reinterpret_cast<const DeviceView*>(l.views_back.mapped)[k];
+  const on_device::View& found = reinterpret_cast<const on_device::View*>(l.views_back.mapped)[k];
   view.emitted = found.emitted;
   view.back = float(double(found.back) / kWholeWeight);
   view.two_sided_back = float(double(found.two_sided_back) / kWholeWeight);

@@ -8,7 +8,9 @@
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
 #include "luxel/gpu/pieces.h"
+#include "luxel/solve/device/moved_lights_shared.h"
 #include "luxel/solve/device/relight_buffers.h"
+#include "luxel/solve/device/relight_shared.h"
 #include "luxel/solve/device/shaders/relight_direct.comp.h"
 #include "luxel/solve/device/shaders/relight_steps.comp.h"
 #include "luxel/trace/vulkan/device_ray_tracer.h"
@@ -16,59 +18,12 @@
 namespace luxel::device {
 namespace {
 
-constexpr uint32_t kThreads = 64;  // as the shaders have it
 /// Shadow rays that are part of an update's one command buffer, at most.
 constexpr uint64_t kMostRaysAtOnce = uint64_t(1) << 22;
 
-/// kStep of shaders/relight_steps.comp.
-enum class RelightStep : uint8_t {
-  patches,
-  send_leaves,
-  send_up,
-  receive_far,
-  hand_down,
-  receive_leaves,
-  begin_sweeps,
-  powers,
-  late,
-  foresee,
-  end_sweep,
-  bounce,
-  take_product,
-  blocks,
-  finish,
-  places,
-  count_of_steps
-};
-constexpr size_t kSteps = size_t(RelightStep::count_of_steps);
+using on_device::MovedLight, on_device::MovedPush, on_device::StepPush;
 
-struct StepPush {
-  VkDeviceAddress setup;
-  uint32_t first, count;
-  uint32_t first_group = 0;
-  Rgb background;
-};
-static_assert(sizeof(StepPush) == 32);
-
-// Structs of shaders/relight_direct.glsl.
-
-struct MovedLight {
-  Rgb intensity;
-  Vec3 position, direction;
-  float range_m, cos_inner, cos_outer;
-  uint32_t kind;
-};
-static_assert(sizeof(MovedLight) == 52);
-static_assert(sizeof(matrix::PatchPoint) == 24);
-
-struct DirectPush {
-  on_device::World world;
-  VkDeviceAddress lights, places, light;
-  uint32_t place_count, light_count;
-  uint32_t first_group = 0;
-  uint32_t unused = 0;
-};
-static_assert(sizeof(DirectPush) == 80);
+static_assert(sizeof(matrix::PatchPoint) == 24);  // as shaders/relight_direct.comp reads it
 
 MovedLight moved_light(const scene::PunctualLight& light) {
   return {light.intensity,
@@ -80,7 +35,9 @@ MovedLight moved_light(const scene::PunctualLight& light) {
           uint32_t(light.kind)};
 }
 
-uint32_t groups_of(uint32_t threads) { return (threads + kThreads - 1) / kThreads; }
+uint32_t groups_of(uint32_t threads) {
+  return (threads + on_device::kRelightThreads - 1) / on_device::kRelightThreads;
+}
 
 }  // namespace
 
@@ -95,18 +52,18 @@ struct DeviceRelighter::Impl {
   std::vector<Rgb> mean_emission{};  ///< B_e per material, as baked
   gpu::Pipeline direct{};
   gpu::PieceSize direct_piece{};  ///< of groups, where direct light is not part of the one buffer
-  std::array<gpu::Pipeline, kSteps> step{};
+  std::array<gpu::Pipeline, on_device::kRelightSteps> step{};
   double seconds = 0;
 
   Status make_pipelines();
   Status send_lights(std::span<const scene::PunctualLight> wanted);
   void send_materials(std::span<const Rgb> emission) const;
-  void run(VkCommandBuffer c, RelightStep which, uint32_t groups, uint32_t first, uint32_t count,
+  void run(VkCommandBuffer c, uint32_t which, uint32_t groups, uint32_t first, uint32_t count,
            Rgb background) const;
-  void per_patch(VkCommandBuffer c, RelightStep which, Rgb background = {}) const;
+  void per_patch(VkCommandBuffer c, uint32_t which, Rgb background = {}) const;
   template <class Push>
   void dispatch(VkCommandBuffer c, const gpu::Pipeline& pipeline, Push push, uint32_t groups) const;
-  DirectPush direct_push(const matrix::RelightLights& from) const;
+  MovedPush direct_push(const matrix::RelightLights& from) const;
   bool has_many_rays(const matrix::RelightLights& from) const;
   void light_probes(VkCommandBuffer c, const matrix::RelightLights& from) const;
   void multiply(VkCommandBuffer c) const;
@@ -115,13 +72,13 @@ struct DeviceRelighter::Impl {
 };
 
 Status DeviceRelighter::Impl::make_pipelines() {
-  for (size_t k = 0; k < kSteps; ++k) {
-    LUXEL_TRY(step[k], gpu::make_compute_pipeline(device, relight_steps_comp,
-                                                  {sizeof(StepPush), {}}, {uint32_t(k)}));
+  for (uint32_t k = 0; k < on_device::kRelightSteps; ++k) {
+    LUXEL_TRY(step[k],
+              gpu::make_compute_pipeline(device, relight_steps_comp, {sizeof(StepPush), {}}, {k}));
   }
   LUXEL_TRY(direct,
             gpu::make_compute_pipeline(device, relight_direct_comp(tracer->kind()),
-                                       {sizeof(DirectPush), {}}, {tracer->shader_constant()}));
+                                       {sizeof(MovedPush), {}}, {tracer->shader_constant()}));
   return {};
 }
 
@@ -157,28 +114,25 @@ void DeviceRelighter::Impl::dispatch(VkCommandBuffer c, const gpu::Pipeline& pip
 }
 
 /// All that came before is done, then the step runs.
-void DeviceRelighter::Impl::run(VkCommandBuffer c, RelightStep which, uint32_t groups,
-                                uint32_t first, uint32_t count, Rgb background) const {
+void DeviceRelighter::Impl::run(VkCommandBuffer c, uint32_t which, uint32_t groups, uint32_t first,
+                                uint32_t count, Rgb background) const {
   if (groups == 0) return;
   gpu::full_barrier(device, c);
-  dispatch(
-      c, step[size_t(which)],
-      StepPush{
-          .setup = buffers.setup.address, .first = first, .count = count, .background = background},
-      groups);
+  dispatch(c, step[which], StepPush{buffers.setup.address, first, count, 0, background}, groups);
 }
 
-void DeviceRelighter::Impl::per_patch(VkCommandBuffer c, RelightStep which, Rgb background) const {
+void DeviceRelighter::Impl::per_patch(VkCommandBuffer c, uint32_t which, Rgb background) const {
   run(c, which, groups_of(buffers.patches), 0, buffers.patches, background);
 }
 
-DirectPush DeviceRelighter::Impl::direct_push(const matrix::RelightLights& from) const {
+MovedPush DeviceRelighter::Impl::direct_push(const matrix::RelightLights& from) const {
   return {.world = tracer->world(),
           .lights = lights.address,
           .places = probes.address,
           .light = buffers.at_probe.address,
           .place_count = uint32_t(data.probe.size()),
-          .light_count = uint32_t(from.punctual.size())};
+          .light_count = uint32_t(from.punctual.size()),
+          .first_group = 0};
 }
 
 /// True: shadow rays are so many that they go to the device in pieces of their own.
@@ -201,28 +155,27 @@ void DeviceRelighter::Impl::light_probes(VkCommandBuffer c,
 
 /// product = F radiosity: up the hierarchy, across, and down.
 void DeviceRelighter::Impl::multiply(VkCommandBuffer c) const {
-  const auto per_depth = [&](RelightStep which, const DepthPart& depth) {
+  const auto per_depth = [&](uint32_t which, const DepthPart& depth) {
     run(c, which, groups_of(depth.count), depth.first, depth.count, {});
   };
-  run(c, RelightStep::send_leaves, groups_of(buffers.clusters), 0, buffers.clusters, {});
-  for (size_t d = buffers.depths.size(); d-- > 0;)
-    per_depth(RelightStep::send_up, buffers.depths[d]);
-  run(c, RelightStep::receive_far, buffers.clusters, 0, buffers.clusters, {});
+  run(c, on_device::kSendLeaves, groups_of(buffers.clusters), 0, buffers.clusters, {});
+  for (size_t d = buffers.depths.size(); d-- > 0;) per_depth(on_device::kSendUp, buffers.depths[d]);
+  run(c, on_device::kReceiveFar, buffers.clusters, 0, buffers.clusters, {});
   for (size_t d = 1; d < buffers.depths.size(); ++d)
-    per_depth(RelightStep::hand_down, buffers.depths[d]);
-  run(c, RelightStep::receive_leaves, buffers.leaves, 0, buffers.leaves, {});
+    per_depth(on_device::kHandDown, buffers.depths[d]);
+  run(c, on_device::kReceiveLeaves, buffers.leaves, 0, buffers.leaves, {});
 }
 
 /// matrix::all_bounces()
 void DeviceRelighter::Impl::sweep(VkCommandBuffer c, int sweeps) const {
   multiply(c);
-  per_patch(c, RelightStep::begin_sweeps);
+  per_patch(c, on_device::kBeginSweeps);
   for (int k = 1; k < sweeps; ++k) {
-    run(c, RelightStep::powers, buffers.coarse, 0, buffers.coarse, {});
-    run(c, RelightStep::late, buffers.coarse, 0, buffers.coarse, {});
-    per_patch(c, RelightStep::foresee);
+    run(c, on_device::kPowers, buffers.coarse, 0, buffers.coarse, {});
+    run(c, on_device::kLate, buffers.coarse, 0, buffers.coarse, {});
+    per_patch(c, on_device::kForesee);
     multiply(c);
-    per_patch(c, RelightStep::end_sweep);
+    per_patch(c, on_device::kEndSweep);
   }
 }
 
@@ -230,14 +183,14 @@ void DeviceRelighter::Impl::sweep(VkCommandBuffer c, int sweeps) const {
 void DeviceRelighter::Impl::bounce(VkCommandBuffer c) const {
   if (data.bounces == 0) return;
   if (buffers.block_rows > 0) {
-    run(c, RelightStep::blocks, buffers.block_rows, 0, buffers.block_rows, {});
-    return per_patch(c, RelightStep::take_product);
+    run(c, on_device::kBlocks, buffers.block_rows, 0, buffers.block_rows, {});
+    return per_patch(c, on_device::kTakeProduct);
   }
   if (data.bounces < 0) return sweep(c, std::get<matrix::HierarchicalCodec>(data.codec).sweeps);
   for (int k = 0; k < data.bounces; ++k) {
-    per_patch(c, RelightStep::bounce);
+    per_patch(c, on_device::kBounce);
     multiply(c);
-    per_patch(c, RelightStep::take_product);
+    per_patch(c, on_device::kTakeProduct);
   }
 }
 
@@ -285,10 +238,10 @@ Status DeviceRelighter::update(const matrix::RelightLights& lights) {
   LUXEL_TRY_STATUS(my.commands->run([&](VkCommandBuffer c) {
     gpu::full_barrier(my.device, c);
     my.light_probes(c, lights);
-    my.per_patch(c, RelightStep::patches, lights.background);
+    my.per_patch(c, on_device::kPatches, lights.background);
     my.bounce(c);
-    my.per_patch(c, RelightStep::finish);
-    my.run(c, RelightStep::places, groups_of(my.buffers.places), 0, my.buffers.places, {});
+    my.per_patch(c, on_device::kFinish);
+    my.run(c, on_device::kPlaces, groups_of(my.buffers.places), 0, my.buffers.places, {});
     gpu::full_barrier(my.device, c);
   }));
   my.seconds = seconds_since(start);

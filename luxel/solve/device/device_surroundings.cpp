@@ -1,21 +1,8 @@
 #include "luxel/solve/device/device_surroundings.h"
 
+#include "luxel/solve/device/surroundings_shared.h"
+
 namespace luxel::device {
-namespace {
-
-/// Surroundings of shaders/surroundings.glsl.
-struct SurroundingValues {
-  Rgb background;
-  float limit;
-  int32_t width, height;
-  float rotation_rad;
-  uint32_t unused = 0;
-  VkDeviceAddress pixels;
-};
-static_assert(sizeof(SurroundingValues) == 40);
-
-}  // namespace
-
 Result<DeviceSurroundings> upload_surroundings(gpu::Commands& commands,
                                                const scene::Environment& map,
                                                const light::Surroundings& around) {
@@ -25,12 +12,12 @@ Result<DeviceSurroundings> upload_surroundings(gpu::Commands& commands,
       map.empty() ? std::span(&kNone, 1) : std::span<const Rgb>(map.radiance);
   DeviceSurroundings out;
   LUXEL_TRY(out.pixels, gpu::uploaded(commands, std::as_bytes(pixels), kWhat));
-  const SurroundingValues values{.background = around.background,
-                                 .limit = around.limit,
-                                 .width = map.empty() ? 0 : map.width,
-                                 .height = map.empty() ? 0 : map.height,
-                                 .rotation_rad = map.rotation_rad,
-                                 .pixels = out.pixels.address};
+  const on_device::Surroundings values{.background = around.background,
+                                       .limit = around.limit,
+                                       .width = map.empty() ? 0 : map.width,
+                                       .height = map.empty() ? 0 : map.height,
+                                       .rotation_rad = map.rotation_rad,
+                                       .pixels = out.pixels.address};
   LUXEL_TRY(out.values, gpu::uploaded(commands, std::as_bytes(std::span(&values, 1)), kWhat));
   return out;
 }

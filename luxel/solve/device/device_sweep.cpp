@@ -9,20 +9,12 @@
 namespace luxel::device {
 namespace {
 
-/// Push in sweep.comp.
-struct SweepPush {
-  VkDeviceAddress map, gathered, counted_rounds;
-  VkDeviceAddress more = 0, ends = 0;
-  VkDeviceAddress slots = 0, first_row = 0, hits = 0;
-  uint32_t slot_count = 0, map_stride, round = 0;
-  uint32_t first_group = 0;
-};
-static_assert(sizeof(SweepPush) == 80);
+using on_device::SweepPush;
 
 Status make_room(const gpu::Device& device, const gather::RadiosityMap& map, LandedRays& rays) {
   if (rays.gathered.size == 0) {
     LUXEL_TRY(rays.sweep, gpu::make_compute_pipeline(device, sweep_comp, {sizeof(SweepPush), {}}));
-    const size_t bytes = rays.element_count * sizeof(DeviceGathered);
+    const size_t bytes = rays.element_count * sizeof(on_device::Gathered);
     LUXEL_TRY(rays.gathered,
               gpu::make_buffer(device, bytes, gpu::Access::device, "the buffer of gathered light"));
     LUXEL_TRY(rays.to_host, gpu::make_buffer(device, bytes, gpu::Access::to_host,
@@ -40,7 +32,7 @@ Status make_room(const gpu::Device& device, const gather::RadiosityMap& map, Lan
 }  // namespace
 
 Result<double> sweep(gpu::Commands& commands, LandedRays& rays, const gather::RadiosityMap& map,
-                     std::span<DeviceGathered> out) {
+                     std::span<on_device::Gathered> out) {
   LUXEL_CHECK(out.size() == rays.element_count);
   LUXEL_TRY_STATUS(make_room(commands.device(), map, rays));
   std::memcpy(rays.map_sent.mapped, map.texels.data(), rays.map_sent.size);
@@ -49,15 +41,14 @@ Result<double> sweep(gpu::Commands& commands, LandedRays& rays, const gather::Ra
     gpu::full_barrier(commands.device(), c);
     commands.device().vk.vkCmdFillBuffer(c, rays.gathered.buffer.get(), 0, VK_WHOLE_SIZE, 0);
   }));
-  SweepPush push{.map = rays.map.address,
-                 .gathered = rays.gathered.address,
-                 .counted_rounds = rays.counted_rounds.address,
-                 .map_stride = map.stride};
+  SweepPush push{};
+  push.map = rays.map.address, push.map_stride = map.stride;
+  push.gathered = rays.gathered.address, push.counted = rays.counted_rounds.address;
   double seconds = 0;
   for (const LandedRound& round : rays.rounds) {
     push.more = round.more.address, push.ends = round.ends.address;
     for (const LandedChunk& chunk : round.chunks) {
-      push.slots = chunk.slots.address, push.first_row = chunk.first_row.address;
+      push.slots = chunk.slots.address, push.rows = chunk.first_row.address;
       push.hits = chunk.hits.address, push.slot_count = uint32_t(chunk.slot_count);
       LUXEL_TRY(const double took,
                 gpu::run_groups(commands, rays.sweep, push, chunk.tile_count, rays.sweep_piece));

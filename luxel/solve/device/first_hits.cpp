@@ -2,20 +2,13 @@
 
 #include "luxel/base/check.h"
 #include "luxel/gpu/pieces.h"
+#include "luxel/solve/device/first_hits_shared.h"
 #include "luxel/solve/device/shaders/first_hits.comp.h"
 
 namespace luxel::device {
 namespace {
 
-struct HitsPush {
-  on_device::World world;
-  VkDeviceAddress elements, hits;
-  uint32_t seed_low, seed_high;
-  uint32_t element_count, samples;
-  uint32_t first_group = 0;
-  uint32_t unused = 0;
-};
-static_assert(sizeof(HitsPush) <= 128);
+using on_device::HitsPush;
 
 }  // namespace
 
@@ -40,14 +33,13 @@ Result<FirstHits> prepare_first_hits(const trace::DeviceRayTracer& tracer, gpu::
 
 Result<double> trace_first_hits(const trace::DeviceRayTracer& tracer, gpu::Commands& commands,
                                 FirstHits& hits) {
-  const uint64_t seed = gather::seed_of_all_rays(hits.params.seed);
   const HitsPush push{.world = tracer.world(),
                       .elements = hits.elements.address,
                       .hits = hits.hits.address,
-                      .seed_low = uint32_t(seed),
-                      .seed_high = uint32_t(seed >> 32),
+                      .seed = on_device::halves(gather::seed_of_all_rays(hits.params.seed)),
                       .element_count = uint32_t(hits.element_count),
-                      .samples = hits.params.samples};
+                      .samples = hits.params.samples,
+                      .first_group = 0};
   const size_t tiles = (hits.element_count + kTogether - 1) / kTogether;
   return gpu::run_groups(commands, hits.pipeline, push, tiles * gather::kCells, hits.piece);
 }

@@ -56,7 +56,7 @@ class GatherDevice final : public gather::RayDevice {
     LUXEL_TRY([[maybe_unused]] const double seconds,
               device::sweep(*commands_, *rays_, map, gathered_));
     for (size_t i = 0; i < out.size(); ++i) {
-      const DeviceGathered& g = gathered_[i];
+      const on_device::Gathered& g = gathered_[i];
       out[i].sum = gather::Float4{g.sum.x, g.sum.y, g.sum.z, 0};
       out[i].sum_luminance2 = g.sum_luminance2, out[i].first_less_second = g.first_less_second;
     }
@@ -71,7 +71,7 @@ class GatherDevice final : public gather::RayDevice {
   std::optional<trace::DeviceRayTracer> tracer_;    ///< of the last begin()
   std::optional<light::DeviceDirectLight> direct_;  ///< goes before tracer_
   std::optional<LandedRays> rays_;                  ///< of the last trace(); goes before commands_
-  std::vector<DeviceGathered> gathered_;
+  std::vector<on_device::Gathered> gathered_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
 #include "luxel/solve/device/device_elements.h"
+#include "luxel/solve/device/escaped_shared.h"
 #include "luxel/solve/device/kept_chunk.h"
 #include "luxel/solve/device/landings.h"
 #include "luxel/solve/device/open_list.h"
@@ -24,43 +25,15 @@ namespace {
 /// which leaves room for those of the buffer that goes beyond this.
 constexpr uint64_t kMostOpen = (uint64_t(1) << 31) - 1;
 
-// Structs of ray_slots.glsl, landed_rays.glsl and escaped_light.comp.
-
-struct RaySeeds {
-  uint32_t plain_low, plain_high, guided_low, guided_high;
-};
+using on_device::EndCounts, on_device::EscapedPush, on_device::LandPush, on_device::RaySeeds;
 
 RaySeeds ray_seeds(uint64_t seed) {
-  const uint64_t plain = gather::seed_of_all_rays(seed),
-                 guided = gather::seed_of_all_rays(gather::seed_of_guided_rays(seed));
-  return {uint32_t(plain), uint32_t(plain >> 32), uint32_t(guided), uint32_t(guided >> 32)};
+  const uint64_t guided = gather::seed_of_guided_rays(seed);
+  return {on_device::halves(gather::seed_of_all_rays(seed)),
+          on_device::halves(gather::seed_of_all_rays(guided))};
 }
 
-struct EndCounts {
-  uint32_t rays = 0, escaped = 0, dark_back = 0, lit_back = 0;
-};
-
-struct Setup {
-  on_device::World world;
-  VkDeviceAddress elements, landings, mixed, shares;
-  VkDeviceAddress slots, first_row, counts, open;
-  RaySeeds seeds;
-  uint32_t slot_count, resolution, has_mixed, unused = 0;
-};
-static_assert(sizeof(Setup) == 40 + 64 + 16 + 16);
-
-struct LandPush {
-  VkDeviceAddress setup, hits;
-  uint32_t first_group = 0, unused = 0;
-};
-
-struct LightPush {
-  VkDeviceAddress around, elements, shares;
-  VkDeviceAddress slots, first_row, hits, light;
-  RaySeeds seeds;
-  uint32_t slot_count, first_group = 0;
-};
-static_assert(sizeof(LightPush) == 80 && sizeof(gather::EscapedLight) == 20);
+static_assert(sizeof(gather::EscapedLight) == 20);  // as shaders/escaped_light.comp writes it
 
 /// A round on its way.
 struct Round {
@@ -113,19 +86,19 @@ Status make_room(const RoundSlots& slots, const LandParams& land, Round& round) 
 /// The buffer of what shaders are told of a chunk.
 Result<gpu::Buffer> setup_of(const LandedChunk& chunk, const Round& round) {
   const transport::OwnSides* sides = round.scene.in.sides;
-  const Setup values{.world = round.scene.tracer.world(),
-                     .elements = round.rays.elements.address,
-                     .landings = round.rays.landings.address,
-                     .mixed = round.rays.mixed.address,
-                     .shares = round.shares.address,
-                     .slots = chunk.slots.address,
-                     .first_row = chunk.first_row.address,
-                     .counts = round.counts.address,
-                     .open = round.open.rays.address,
-                     .seeds = round.seeds,
-                     .slot_count = uint32_t(chunk.slot_count),
-                     .resolution = uint32_t(round.scene.in.atlas.resolution),
-                     .has_mixed = sides && !sides->mixed.empty()};
+  const on_device::LandSetup values{.world = round.scene.tracer.world(),
+                                    .elements = round.rays.elements.address,
+                                    .landings = round.rays.landings.address,
+                                    .mixed = round.rays.mixed.address,
+                                    .shares = round.shares.address,
+                                    .slots = chunk.slots.address,
+                                    .rows = chunk.first_row.address,
+                                    .counts = round.counts.address,
+                                    .open = round.open.rays.address,
+                                    .seeds = round.seeds,
+                                    .slot_count = uint32_t(chunk.slot_count),
+                                    .resolution = uint32_t(round.scene.in.atlas.resolution),
+                                    .has_mixed = sides && !sides->mixed.empty()};
   return gpu::uploaded(round.commands(), std::as_bytes(std::span(&values, 1)),
                        "the buffer of a round's settings");
 }
@@ -146,14 +119,14 @@ Result<double> trace_chunk(const LandedChunk& chunk, Round& round) {
   LUXEL_TRY_STATUS(reset(chunk, round));
   LUXEL_TRY(const gpu::Buffer setup, setup_of(chunk, round));
   return gpu::run_groups(round.commands(), round.rays.land,
-                         LandPush{setup.address, chunk.hits.address},
+                         LandPush{setup.address, chunk.hits.address, 0},
                          chunk.tile_count * gather::kCells, round.rays.land_piece);
 }
 
 /// Finds where a chunk's rays land, and which ones the device leaves open. `seconds` gets those of
 /// the device.
-Result<std::vector<DeviceOpenRay>> land_chunk(const LandedChunk& chunk, Round& round,
-                                              double& seconds) {
+Result<std::vector<on_device::OpenRay>> land_chunk(const LandedChunk& chunk, Round& round,
+                                                   double& seconds) {
   gpu::Commands& commands = round.commands();
   LUXEL_TRY(const double took, trace_chunk(chunk, round));
   LUXEL_TRY(const uint32_t count, open_count(commands, round.open));
@@ -173,23 +146,24 @@ Result<std::vector<DeviceOpenRay>> land_chunk(const LandedChunk& chunk, Round& r
 /// Adds up what a chunk's escaped rays see. Returns the seconds.
 Result<double> light_of_escaped(const LandedChunk& chunk, Round& round) {
   if (round.rays.is_dark_around) return 0.0;
-  const LightPush push{.around = round.rays.around.values.address,
-                       .elements = round.rays.elements.address,
-                       .shares = round.shares.address,
-                       .slots = chunk.slots.address,
-                       .first_row = chunk.first_row.address,
-                       .hits = chunk.hits.address,
-                       .light = round.light.address,
-                       .seeds = round.seeds,
-                       .slot_count = uint32_t(chunk.slot_count)};
+  const EscapedPush push{.around = round.rays.around.values.address,
+                         .elements = round.rays.elements.address,
+                         .shares = round.shares.address,
+                         .slots = chunk.slots.address,
+                         .rows = chunk.first_row.address,
+                         .hits = chunk.hits.address,
+                         .light = round.light.address,
+                         .seeds = round.seeds,
+                         .slot_count = uint32_t(chunk.slot_count),
+                         .first_group = 0};
   return gpu::run_groups(round.commands(), round.rays.escaped, push, chunk.tile_count,
                          round.rays.escaped_piece);
 }
 
 /// Adds what the rays of an element met and saw outside, of those that the device has not left
 /// open. What was there before is of the first half now.
-void take_element(const RaySlot& slot, const EndCounts& counts, const gather::EscapedLight& light,
-                  Round& round) {
+void take_element(const on_device::RaySlot& slot, const EndCounts& counts,
+                  const gather::EscapedLight& light, Round& round) {
   gather::TracedHits& hits = round.hits;
   const size_t i = slot.element;
   hits.samples[i] = uint16_t(slot.end), hits.last_round[i] = uint8_t(round.rays.rounds.size());
@@ -205,7 +179,7 @@ void take_element(const RaySlot& slot, const EndCounts& counts, const gather::Es
 }
 
 /// take_element() of a chunk's slots. Returns how many rays each has.
-Result<std::vector<uint32_t>> take_counts(std::span<const RaySlot> slots, Round& round) {
+Result<std::vector<uint32_t>> take_counts(std::span<const on_device::RaySlot> slots, Round& round) {
   constexpr std::string_view kBack = "the buffer of what comes back";
   LUXEL_TRY(const auto counts,
             gpu::downloaded<EndCounts>(round.commands(), round.counts, slots.size(), kBack));
@@ -224,8 +198,8 @@ Result<std::vector<uint32_t>> take_counts(std::span<const RaySlot> slots, Round&
 
 /// Ends the rays of a chunk's elements that the device has left open. Returns their hits.
 Result<std::vector<gather::HitTile>> end_open(const SlotChunk& slots,
-                                              std::span<const DeviceOpenRay> open, Round& round,
-                                              Progress& progress) {
+                                              std::span<const on_device::OpenRay> open,
+                                              Round& round, Progress& progress) {
   // Elements before the chunk without any rays have no more hits.
   round.more_ends.resize(slots.begin, uint32_t(round.more.size()));
   trace::DeviceRayTracer& tracer = round.scene.tracer;
@@ -262,7 +236,7 @@ Result<LandedChunk> finish_chunk(const SlotChunk& slots, Round& round, LandedSec
   const uint64_t places = slots.first_row.back() * uint64_t(kTogether);
   LUXEL_TRY(out.hits, gpu::make_buffer(round.device(), places * sizeof(gather::StoredHit),
                                        gpu::Access::device, "the buffer of hits"));
-  LUXEL_TRY(const std::vector<DeviceOpenRay> open, land_chunk(out, round, seconds.device));
+  LUXEL_TRY(const std::vector<on_device::OpenRay> open, land_chunk(out, round, seconds.device));
   LUXEL_TRY(const double light_s, light_of_escaped(out, round));
   seconds.device += light_s;
   LUXEL_TRY(const std::vector<uint32_t> rays, take_counts(slots.slots, round));
@@ -326,7 +300,7 @@ Result<LandedRays> begin_rays(const DeviceScene& scene, const gather::TraceParam
   if (out.is_dark_around) return out;
   LUXEL_TRY(out.around, upload_surroundings(commands, in.scene.environment, around));
   LUXEL_TRY(out.escaped, gpu::make_compute_pipeline(commands.device(), escaped_light_comp,
-                                                    {sizeof(LightPush), {}}));
+                                                    {sizeof(EscapedPush), {}}));
   return out;
 }
 
@@ -352,7 +326,7 @@ Status land_round(const DeviceScene& scene, std::span<const uint16_t> target,
     LUXEL_TRY(LandedChunk landed, finish_chunk(chunk, round, seconds, progress));
     out.chunks.push_back(std::move(landed));
     uint64_t samples = 0;
-    for (const RaySlot& slot : chunk.slots) samples += slot.end - slot.first;
+    for (const on_device::RaySlot& slot : chunk.slots) samples += slot.end - slot.first;
     progress.advance(samples);
   }
   LUXEL_TRY_STATUS(keep_round(round, out));

@@ -45,7 +45,7 @@ struct LandedRays {
   gpu::Pipeline sweep;
   gpu::PieceSize sweep_piece{64};  ///< of tiles
   gpu::Buffer map_sent, map;       ///< the texels of a gather::RadiosityMap
-  gpu::Buffer gathered, to_host;   ///< DeviceGathered of each element
+  gpu::Buffer gathered, to_host;   ///< on_device::Gathered of each element
 };
 
 struct LandParams {

@@ -96,7 +96,7 @@ void LandedRaysOnDevice::expect_the_same(const gather::Room& room, trace::Hierar
 
   const gather::RadiosityMap map = any_map(room, *expected);
   const Brought by_processor = swept(map, *expected);
-  std::vector<DeviceGathered> gathered(n);
+  std::vector<on_device::Gathered> gathered(n);
   ASSERT_TRUE(sweep(*commands_, *landed, map, gathered));
   const auto per_sample = 1 / float(samples);
   std::vector<float> e, e2, halves, expected_e, expected_e2, expected_halves;
@@ -207,7 +207,7 @@ TEST_F(LandedRaysOnDevice, BringTheSameBitsEachTime) {
   const gather::TraceScene in = gather::trace_scene(gather::scene_of(*room), &sides);
   auto tracer = trace::DeviceRayTracer::build(*device_, room->scene);
   ASSERT_TRUE(tracer);
-  std::vector<std::vector<DeviceGathered>> gathered;
+  std::vector<std::vector<on_device::Gathered>> gathered;
   for (int k = 0; k < 2; ++k) {
     Progress progress;
     gather::TracedHits hits = gather::no_hits(room->elements.size());

@@ -6,17 +6,8 @@
 #include "luxel/base/parallel.h"
 
 namespace luxel::device {
-namespace {
-
-/// The beginning of OpenRays of landed_rays.glsl.
-struct OpenHead {
-  uint32_t count = 0, capacity = 0;
-};
-
-}  // namespace
-
 Result<OpenList> make_open_list(const gpu::Device& device, uint64_t capacity) {
-  const uint64_t bytes = sizeof(OpenHead) + capacity * sizeof(DeviceOpenRay);
+  const uint64_t bytes = sizeof(on_device::OpenRays) + capacity * sizeof(on_device::OpenRay);
   constexpr std::string_view kWhat = "the buffer of rays that the processor ends";
   OpenList out;
   LUXEL_TRY(out.rays, gpu::make_buffer(device, bytes, gpu::Access::device, kWhat));
@@ -26,32 +17,33 @@ Result<OpenList> make_open_list(const gpu::Device& device, uint64_t capacity) {
 }
 
 void record_emptying(const gpu::Device& device, VkCommandBuffer commands, const OpenList& list) {
-  const OpenHead head{0, list.capacity};
+  const on_device::OpenRays head{0, list.capacity};
   device.vk.vkCmdUpdateBuffer(commands, list.rays.buffer.get(), 0, sizeof head, &head);
 }
 
 Result<uint32_t> open_count(gpu::Commands& commands, const OpenList& list) {
-  LUXEL_TRY_STATUS(gpu::copy_bytes(commands, list.rays, list.to_host, sizeof(OpenHead)));
-  OpenHead head;
+  LUXEL_TRY_STATUS(gpu::copy_bytes(commands, list.rays, list.to_host, sizeof(on_device::OpenRays)));
+  on_device::OpenRays head;
   std::memcpy(&head, list.to_host.mapped, sizeof head);
   return head.count;
 }
 
-Result<std::vector<DeviceOpenRay>> read_open(gpu::Commands& commands, const OpenList& list,
-                                             uint32_t count) {
-  std::vector<DeviceOpenRay> out(count);
+Result<std::vector<on_device::OpenRay>> read_open(gpu::Commands& commands, const OpenList& list,
+                                                  uint32_t count) {
+  std::vector<on_device::OpenRay> out(count);
   if (count == 0) return out;
-  const size_t bytes = count * sizeof(DeviceOpenRay);
-  LUXEL_TRY_STATUS(gpu::copy_bytes(commands, list.rays, list.to_host, sizeof(OpenHead) + bytes));
-  std::memcpy(out.data(), list.to_host.mapped + sizeof(OpenHead), bytes);
+  const size_t bytes = count * sizeof(on_device::OpenRay);
+  LUXEL_TRY_STATUS(
+      gpu::copy_bytes(commands, list.rays, list.to_host, sizeof(on_device::OpenRays) + bytes));
+  std::memcpy(out.data(), list.to_host.mapped + sizeof(on_device::OpenRays), bytes);
   return out;
 }
 
-std::vector<gather::OpenRay> in_order(std::span<const DeviceOpenRay> open, size_t begin, size_t end,
-                                      const trace::DeviceRayTracer& tracer) {
+std::vector<gather::OpenRay> in_order(std::span<const on_device::OpenRay> open, size_t begin,
+                                      size_t end, const trace::DeviceRayTracer& tracer) {
   const size_t n = end - begin;
   std::vector<size_t> first(n + 1);
-  for (const DeviceOpenRay& ray : open) ++first[ray.element - begin + 1];
+  for (const on_device::OpenRay& ray : open) ++first[ray.element - begin + 1];
   for (size_t i = 0; i < n; ++i) first[i + 1] += first[i];
   std::vector<uint32_t> order(open.size());
   std::vector<size_t> next = first;
@@ -62,8 +54,8 @@ std::vector<gather::OpenRay> in_order(std::span<const DeviceOpenRay> open, size_
       const auto own = std::span(order).subspan(first[i], first[i + 1] - first[i]);
       std::ranges::sort(own, {}, [&](uint32_t k) { return open[k].place; });
       for (size_t at = first[i]; at < first[i + 1]; ++at) {
-        const DeviceOpenRay& ray = open[order[at]];
-        out[at] = {ray.element, ray.sample, ray.doublings, tracer.hit_of(ray.hit)};
+        const on_device::OpenRay& ray = open[order[at]];
+        out[at] = {ray.element, ray.sample_number, ray.doublings, tracer.hit_of(ray.hit)};
       }
     }
   });

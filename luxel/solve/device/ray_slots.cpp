@@ -60,7 +60,7 @@ uint32_t places_with(const gather::CellShares& shares, gather::Samples samples) 
 
 /// Sorts a chunk's slots and makes its rows.
 void finish(SlotChunk& chunk) {
-  std::ranges::stable_sort(chunk.slots, std::greater{}, &RaySlot::places);
+  std::ranges::stable_sort(chunk.slots, std::greater{}, &on_device::RaySlot::places);
   for (size_t k = 0; k < chunk.slots.size(); k += kTogether)
     chunk.first_row.push_back(chunk.first_row.back() + chunk.slots[k].places);
 }
@@ -79,7 +79,8 @@ RoundSlots slots_of_round(std::span<const uint16_t> target, const gather::Traced
     for (size_t i = begin; i < end; ++i) {
       const gather::Samples samples{hits.samples[i], std::max(hits.samples[i], target[i])};
       if (samples.count() == 0) continue;
-      RaySlot slot{uint32_t(i), samples.first, samples.end, in_use.of(i), samples.count()};
+      on_device::RaySlot slot{uint32_t(i), samples.first, samples.end, in_use.of(i),
+                              samples.count()};
       if (slot.shares > 0) slot.places = places_with(in_use.at(slot.shares), samples);
       chunk.slots.push_back(slot);
       places += slot.places, out.samples += samples.count();

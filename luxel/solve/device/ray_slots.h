@@ -1,28 +1,19 @@
 // The rays that a round adds to elements, in the order in which a device takes them.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "luxel/solve/device/rays_shared.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
 
 namespace luxel::device {
-
-/// The rays that a round adds to one element; RaySlot of shaders/ray_slots.glsl.
-struct RaySlot {
-  uint32_t element = 0;
-  uint32_t first = 0, end = 0;  ///< its samples
-  uint32_t shares = 0;  ///< 0: cells have equal shares; else 1 + a number of RoundSlots::shares
-  uint32_t places = 0;  ///< for hits: as many as there are rays, or a few more
-};
-static_assert(sizeof(RaySlot) == 20);
 
 /// Slots of the elements [begin, end) that get rays. Those with as many rays lie together: a work
 /// group has 64 slots, a tile, and takes as long as the one with the most.
 struct SlotChunk {
   size_t begin = 0, end = 0;  ///< `begin` is a multiple of gather::kTileElements
-  std::vector<RaySlot> slots;
+  std::vector<on_device::RaySlot> slots;
   /// Per tile, where its hits begin, in rows of 64: the first of each slot, the second of each and
   /// so on. One extra entry: how many rows there are.
   std::vector<uint32_t> first_row{0};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "luxel/base/check.h"
+#include "luxel/solve/device/relight_shared.h"
 #include "luxel/solve/matrix/bc1_block.h"
 
 namespace luxel::device {
@@ -10,56 +11,11 @@ namespace {
 
 constexpr std::string_view kWhat = "the buffer of patches";
 
-// Structs of shaders/relight_steps.comp.
+using on_device::Cluster, on_device::Moments, on_device::RelightSetup;
 
-struct DeviceCluster {
-  uint32_t first, end, child, parent;
-};
+// As shaders/relight_steps.comp reads them.
 static_assert(sizeof(matrix::Hierarchical::Far) == 32 && sizeof(matrix::Hierarchical::Near) == 12);
 static_assert(sizeof(matrix::Hierarchical::Up) == 48 && sizeof(matrix::Bc1::Kept) == 8);
-constexpr size_t kMomentBytes = 36;
-
-struct RelightSetup {
-  VkDeviceAddress reflectance, emission;
-  VkDeviceAddress area, sky;
-  VkDeviceAddress material;
-  VkDeviceAddress first_probe;
-  VkDeviceAddress first_glow, glow_material;
-  VkDeviceAddress glow;
-  VkDeviceAddress mean_emission;
-  VkDeviceAddress at_probe;
-  VkDeviceAddress direct, straight, sent, radiosity, product, irradiance, first_product, gathered,
-      indirect;
-  VkDeviceAddress clusters;
-  VkDeviceAddress by_depth;
-  VkDeviceAddress leaves;
-  VkDeviceAddress up;
-  VkDeviceAddress phi;
-  VkDeviceAddress first_far, first_near;
-  VkDeviceAddress far;
-  VkDeviceAddress near;
-  VkDeviceAddress entries;
-  VkDeviceAddress moments_sent, moments_received;
-  VkDeviceAddress cluster_of;
-  VkDeviceAddress first_of_coarse, of_coarse;
-  VkDeviceAddress response;
-  VkDeviceAddress power, late;
-  VkDeviceAddress blocks;
-  VkDeviceAddress row, column;
-  VkDeviceAddress row_scale, column_scale;
-  VkDeviceAddress first_kept;
-  VkDeviceAddress kept;
-  VkDeviceAddress byte_values;
-  VkDeviceAddress first_transfer, transfer_patch;
-  VkDeviceAddress transfer_weight;
-  VkDeviceAddress at_place;
-  VkDeviceAddress radiosity_of_material;
-  uint32_t patch_count, coarse_count, blocks_per_row;
-  uint32_t glow_is_kept;
-  Rgb kept_unit;
-  uint32_t unused = 0;
-};
-static_assert(sizeof(RelightSetup) == 51 * 8 + 32);
 
 /// Sends what it is given to the device, and remembers the first failure.
 class Sender {
@@ -147,7 +103,7 @@ void send_places(const matrix::Target& target, Sender& to, RelightBuffers& out, 
 
 void send_clusters(const matrix::Hierarchical& m, Sender& to, RelightBuffers& out,
                    RelightSetup& s) {
-  std::vector<DeviceCluster> clusters;
+  std::vector<Cluster> clusters;
   for (const matrix::Cluster& c : m.clusters) clusters.push_back({c.first, c.end, c.child, 0});
   std::vector<uint32_t> by_depth, leaves;
   uint32_t deepest = 0;
@@ -179,8 +135,8 @@ void send_hierarchy(const matrix::Hierarchical& m, Sender& to, RelightBuffers& o
   for (size_t k = 0; k < m.entries.size(); ++k)
     entries[k / 4] |= uint32_t(m.entries[k]) << (8 * (k % 4));
   s.entries = to.send(entries);
-  s.moments_sent = to.room(m.clusters.size() * kMomentBytes);
-  s.moments_received = to.room(m.clusters.size() * kMomentBytes);
+  s.moments_sent = to.room(m.clusters.size() * sizeof(Moments));
+  s.moments_received = to.room(m.clusters.size() * sizeof(Moments));
 }
 
 void send_coarse(const matrix::CoarseScene& coarse, Sender& to, RelightBuffers& out,

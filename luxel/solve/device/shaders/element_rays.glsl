@@ -2,15 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/base/both_directions.h"
 #include "luxel/base/both_sobol.h"
+#include "luxel/solve/device/rays_shared.h"
 #include "luxel/trace/vulkan/shaders/frame.glsl"
 
 const uint kCellsPerAxis = 8, kCells = 64;
-
-struct Element {
-  vec3 origin;  // off the surface
-  vec3 normal, geometric_normal;
-};
-layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
 
 vec3 ray_direction(Element e, uint sample_number, uvec2 seed) {
   float u = unit_float(reverse_bits(scramble_upwards(sample_number, seed.x)));

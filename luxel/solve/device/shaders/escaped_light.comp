@@ -1,32 +1,20 @@
 // What rays see that have left the scene. A thread takes a slot, and its rays in their order: the sum
-// is the same each time. ../landed_rays.cpp has the structs.
+// is the same each time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/see_through.glsl"
 #include "slot_rays.glsl"
 #include "stored_hits.glsl"
 #include "surroundings.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = kRaysTogether) in;
 
 // gather::EscapedLight
 struct EscapedLight {
   vec3 sum;
   float luminance2, second_luminance;
 };
-layout(buffer_reference, scalar) writeonly buffer AllLight { EscapedLight at[]; };
-layout(push_constant, scalar) uniform Push {
-  Surroundings around;
-  Elements elements;
-  AllShares shares;
-  // What the chunk has:
-  RaySlots slots;
-  TileRows rows;
-  StoredHits hits;
-  AllLight light;  // per slot
-  RaySeeds seeds;
-  uint slot_count;
-  uint first_group;
-};
+OUT_BUFFER(AllLight, EscapedLight);
+#include "luxel/solve/device/escaped_shared.h"
 
 // Adds what a ray sees.
 void add(Element e, uint sample_number, uvec2 seed, float weight, bool second_half, inout EscapedLight sum) {
@@ -37,7 +25,7 @@ void add(Element e, uint sample_number, uvec2 seed, float weight, bool second_ha
 }
 
 void main() {
-  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, own = tile * 64 + lane;
+  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, own = tile * kRaysTogether + lane;
   if (own >= slot_count) return;
   RaySlot slot = slots.at[own];
   Element e = elements.at[slot.element];
@@ -52,7 +40,7 @@ void main() {
     for (uint block = first / kCells; block * kCells < end; ++block) {
       uint sample_number = sample_of_eighths(block, at.x, at.y);
       if (sample_number < first || sample_number >= end) continue;
-      if (hits.at[row++ * 64 + lane] != uvec2(kEscaped, 0)) continue;
+      if (hits.at[row++ * kRaysTogether + lane] != uvec2(kEscaped, 0)) continue;
       add(e, sample_number, seed, uintBitsToFloat((127 - doublings) << 23), 2 * sample_number >= end, sum);
     }
   }

@@ -3,25 +3,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/hierarchy.glsl"
+#include "luxel/solve/device/first_hits_shared.h"
 #include "element_rays.glsl"
-layout(local_size_x = 64) in;
-
-// Of 64 elements after each other: the first ray of each, the second of each and so on, in the order
-// of cells.
-layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  World world;
-  Elements elements;
-  Hits hits;
-  uvec2 seed;  // of all elements
-  uint element_count, samples;
-  uint first_group;  // 64 for each 64 elements
-};
+layout(local_size_x = kRaysTogether) in;
 
 void main() {
   uint group = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
-  uint cell = group % kCells, tile = group / kCells, i = tile * 64 + lane;
+  uint cell = group % kCells, tile = group / kCells, i = tile * kRaysTogether + lane;
   if (i >= element_count) return;
   Element e = elements.at[i];
   uvec2 own_seed = hash64(seed, uvec2(i, 0));
@@ -31,6 +19,6 @@ void main() {
     uint sample_number = sample_of_eighths(block, at.x, at.y);
     if (sample_number >= samples) continue;
     Ray ray = Ray(e.origin, ray_direction(e, sample_number, own_seed), 0, uintBitsToFloat(0x7f800000u));
-    hits.at[(tile * samples + place++) * 64 + lane] = trace(world, ray, false);
+    hits.at[(tile * samples + place++) * kRaysTogether + lane] = trace(world, ray, false);
   }
 }

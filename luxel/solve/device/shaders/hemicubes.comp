@@ -1,72 +1,14 @@
 // What viewpoints see through hemicubes: luxel/solve/hemicube/look.h. A work group takes a
 // viewpoint, its threads one pixel after the other; neighbours in the list of pixels look in similar
-// directions. Shares are whole numbers, whose sum is the same in any order. ../device_look.cpp has
-// the structs.
+// directions. Shares are whole numbers, whose sum is the same in any order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/hierarchy.glsl"
+#include "luxel/solve/device/look_shared.h"
 #include "surroundings.glsl"
 
 const uint kThreads = 128;
 layout(local_size_x = 128) in;
-
-struct Pixel {
-  vec3 direction;  // about +z
-  float factor;    // they sum to 1
-  uint weight;     // the same; they sum to 2^31
-};
-struct Viewpoint {
-  vec3 tangent, bitangent, normal;  // of the hemicube
-  vec3 origin;                      // off the surface
-  vec3 geometric_normal;
-};
-// A drawn triangle and what a hit on it means.
-struct SeenTriangle {
-  uint first_root, grid;  // hemicube::Mesh
-  uint other_side;        // of a sheet: its number; or kNoTriangle
-  uint flags;
-  vec3 emission;
-  uint picture;  // of the emission: 1 + a number of PlacedPictures; 0: none
-};
-const uint kTwoSided = 1, kEmissive = 2;
-// A triangle of the mesh, or one that was cut in two: hemicube::Node.
-struct Node {
-  vec2 at[3];
-  uint element[3];  // of its corners; or the triangle's own, in the first one
-  uint child;
-};
-struct View {
-  vec3 emitted;
-  uint back, two_sided_back;
-};
-layout(buffer_reference, scalar) readonly buffer Pixels { Pixel at[]; };
-layout(buffer_reference, scalar) readonly buffer Viewpoints { Viewpoint at[]; };
-layout(buffer_reference, scalar) readonly buffer SeenTriangles { SeenTriangle at[]; };
-layout(buffer_reference, scalar) readonly buffer PlacedPictures { PlacedPicture at[]; };
-layout(buffer_reference, scalar) readonly buffer Nodes { Node at[]; };
-layout(buffer_reference, scalar) writeonly buffer Views { View at[]; };
-layout(buffer_reference, scalar) buffer Shares { uint at[]; };
-
-layout(buffer_reference, scalar) buffer Setup {
-  World world;
-  SeenTriangles triangles;
-  Nodes nodes;
-  Pixels pixels;
-  Surroundings around;
-  PlacedPictures pictures;
-  Texels texels;
-  Floats linear_of_byte;
-  uint pixel_count, element_count;
-  uint per_vertex;  // else per triangle
-};
-
-layout(push_constant, scalar) uniform Push {
-  Setup setup;
-  Viewpoints from;
-  Views views;
-  Shares shares;  // of each viewpoint: one for each element
-  uint first_group;
-};
 
 shared vec3 emitted_by[kThreads];
 shared uint back, two_sided_back;

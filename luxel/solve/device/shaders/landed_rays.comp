@@ -1,52 +1,12 @@
 // Makes the rays of elements, traces them, and stores where they land. A work group has one cell of
 // directions of 64 slots, whose rays are alike: its threads each take a slot, and its rays of that
-// cell. ../landed_rays.cpp has the structs.
+// cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "landings.glsl"
 #include "slot_rays.glsl"
-layout(local_size_x = 64) in;
-
-// A ray whose end the processor finds.
-struct OpenRay {
-  uint element, place, sample_number, doublings;
-  Hit hit;
-};
-layout(buffer_reference, scalar) buffer OpenRays {
-  uint count;  // may be more than there is room for
-  uint capacity;
-  OpenRay at[];
-};
-// Per slot: its rays, and those that left the scene, met the back of a one-sided surface, and that of
-// another.
-struct Counts {
-  uint rays, escaped, dark_back, lit_back;
-};
-layout(buffer_reference, scalar) buffer AllCounts { Counts at[]; };
-
-layout(buffer_reference, scalar) buffer Setup {
-  World world;
-  Elements elements;
-  Landings landings;
-  Words mixed;  // bits per LookupPlace::base: where walls are
-  AllShares shares;
-  // What the chunk has:
-  RaySlots slots;
-  TileRows rows;
-  AllCounts counts;
-  OpenRays open;
-  RaySeeds seeds;
-  uint slot_count;
-  uint resolution;
-  uint has_mixed;
-};
-
-layout(push_constant, scalar) uniform Push {
-  Setup setup;
-  StoredHits hits;  // of the chunk
-  uint first_group;  // of this piece of the chunk
-};
+layout(local_size_x = kRaysTogether) in;
 
 bool is_mixed(uint base) { return setup.has_mixed != 0 && (setup.mixed.at[base / 32] >> (base % 32) & 1u) != 0; }
 
@@ -62,7 +22,7 @@ void leave_open(RaySlot slot, SlotRay ray, Hit hit) {
 }
 
 // Where a ray lands. What the processor takes on is counted there.
-uvec2 end_of(RaySlot slot, SlotRay ray, Hit hit, inout Counts counts) {
+uvec2 end_of(RaySlot slot, SlotRay ray, Hit hit, inout EndCounts counts) {
   if (hit.number == kNoTriangle) {
     ++counts.escaped;
     return uvec2(kEscaped, 0);
@@ -84,7 +44,7 @@ uvec2 end_of(RaySlot slot, SlotRay ray, Hit hit, inout Counts counts) {
 
 void main() {
   uint group = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
-  uint cell = group % kCells, tile = group / kCells, own = tile * 64 + lane;
+  uint cell = group % kCells, tile = group / kCells, own = tile * kRaysTogether + lane;
   if (own >= setup.slot_count) return;
   RaySlot slot = setup.slots.at[own];
   Element e = setup.elements.at[slot.element];
@@ -93,13 +53,13 @@ void main() {
   uint doublings = doublings_of(setup.shares, slot.shares, cell);
   uint first = slot.first << doublings, end = slot.end << doublings;
   SlotRay ray = SlotRay(first_place(slot, setup.shares, cell, plain), 0, doublings);
-  Counts counts = Counts(0, 0, 0, 0);
+  EndCounts counts = EndCounts(0, 0, 0, 0);
   for (uint block = first / kCells; block * kCells < end; ++block) {
     ray.sample_number = sample_of_eighths(block, at.x, at.y);
     if (ray.sample_number < first || ray.sample_number >= end) continue;
     vec3 direction = ray_direction(e, ray.sample_number, seed);
     Hit hit = trace(setup.world, Ray(e.origin, direction, 0, uintBitsToFloat(0x7f800000u)), false);
-    hits.at[(setup.rows.at[tile] + ray.place) * 64 + lane] = end_of(slot, ray, hit, counts);
+    hits.at[(setup.rows.at[tile] + ray.place) * kRaysTogether + lane] = end_of(slot, ray, hit, counts);
     ++ray.place, ++counts.rays;
   }
   // Whole numbers: their sum is the same in any order.

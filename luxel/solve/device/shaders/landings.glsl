@@ -1,15 +1,6 @@
-// Which place of the lightmap a triangle's point has: ../landings.h has the structs.
+// Which place of the lightmap a triangle's point has.
+#include "luxel/solve/device/land_shared.h"
 #include "stored_hits.glsl"
-
-struct Landing {
-  vec2 corners[3];
-  float near_m;
-  uint kind;
-};
-const uint kDark = 1, kFollowed = 2, kFromBehind = 4;
-
-layout(buffer_reference, scalar) readonly buffer Landings { Landing at[]; };  // two a triangle
-layout(buffer_reference, scalar) readonly buffer Words { uint at[]; };
 
 // transport::lookup_place()
 LookupPlace lookup_place(Landing l, vec2 uv, uint resolution) {

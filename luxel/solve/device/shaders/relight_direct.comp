@@ -7,28 +7,14 @@
 layout(local_size_x = 64) in;
 
 const uint kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
-struct PunctualLight {
-  vec3 intensity, position, direction;
-  float range_m, cos_inner, cos_outer;
-  uint kind;
-};
+// matrix::PatchPoint
 struct Place {
   vec3 position, normal;
 };
-layout(buffer_reference, scalar) readonly buffer PunctualLights { PunctualLight at[]; };
-layout(buffer_reference, scalar) readonly buffer Places { Place at[]; };
-layout(buffer_reference, scalar) writeonly buffer Colors { vec3 at[]; };
+IN_BUFFER(Places, Place);
+#include "luxel/solve/device/moved_lights_shared.h"
 
-layout(push_constant, scalar) uniform Push {
-  World world;
-  PunctualLights lights;
-  Places places;
-  Colors light;
-  uint place_count, light_count;
-  uint first_group;
-};
-
-vec3 light_of(PunctualLight l, Place p) {
+vec3 light_of(MovedLight l, Place p) {
   vec3 towards = -l.direction;
   float t_max = uintBitsToFloat(0x7f800000u), share = 1;
   if (l.kind != kDirectional) {

@@ -1,40 +1,14 @@
 // Light that patches send to each other: the steps of luxel/solve/matrix/relighter.h, one of which a
-// pipeline runs. ../device_relighter.cpp has the structs and the order.
+// pipeline runs. ../device_relighter.cpp has the order.
 #version 460
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
-
-const uint kThreads = 64;
-layout(local_size_x = 64) in;
-
-layout(constant_id = 0) const uint kStep = 0;
-// RelightStep of ../device_relighter.cpp: a thread takes a patch, a cluster or a place, or a work
-// group takes a cluster, a leaf or a row of blocks.
-const uint kPatches = 0, kSendLeaves = 1, kSendUp = 2, kReceiveFar = 3, kHandDown = 4, kReceiveLeaves = 5,
-           kBeginSweeps = 6, kPowers = 7, kLate = 8, kForesee = 9, kEndSweep = 10, kBounce = 11, kTakeProduct = 12,
-           kBlocks = 13, kFinish = 14, kPlaces = 15;
-
-layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
-layout(buffer_reference, scalar) buffer Floats { float at[]; };
-layout(buffer_reference, scalar) buffer Colors { vec3 at[]; };
-
-// matrix::Cluster, and its parent.
-struct Cluster {
-  uint first, end, child, parent;
-};
-layout(buffer_reference, scalar) readonly buffer Clusters { Cluster at[]; };
-
-// Moments of a cluster's light: a colour for each of its three functions.
-struct Moments {
-  vec3 of[3];
-};
-layout(buffer_reference, scalar) buffer AllMoments { Moments at[]; };
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/gpu/shared_language.h"
 
 // Functions of the parent in terms of its half's: of[4 * b + a], a the parent's.
 struct Up {
   float of[12];
 };
-layout(buffer_reference, scalar) readonly buffer Ups { Up at[]; };
+IN_BUFFER(Ups, Up);
 
 // matrix::Hierarchical::Far: twelve numbers of 16 bits, [4 * b + a], a the receiver's function.
 struct Far {
@@ -42,79 +16,31 @@ struct Far {
   float scale;
   uint sender;
 };
-layout(buffer_reference, scalar) readonly buffer Fars { Far at[]; };
+IN_BUFFER(Fars, Far);
 
 // matrix::Hierarchical::Near
 struct Near {
   uint sender, entry;
   float scale;
 };
-layout(buffer_reference, scalar) readonly buffer Nears { Near at[]; };
+IN_BUFFER(Nears, Near);
 
 // matrix::Bc1::Kept: three halves, and the place of the column.
 struct Kept {
   uint red_green, blue_place;
 };
-layout(buffer_reference, scalar) readonly buffer AllKept { Kept at[]; };
+IN_BUFFER(AllKept, Kept);
 
-layout(buffer_reference, scalar) buffer Setup {
-  // Patches.
-  Colors reflectance, emission;
-  Floats area, sky;
-  Numbers material;
-  Numbers first_probe;
-  Numbers first_glow, glow_material;
-  Colors glow;
-  Floats mean_emission;  // three per material
-  Colors at_probe;       // direct light
-  Colors direct, straight, sent, radiosity, product, irradiance, first_product, gathered, indirect;
-  // The hierarchy.
-  Clusters clusters;
-  Numbers by_depth;  // clusters, depth by depth
-  Numbers leaves;
-  Ups up;
-  Floats phi;  // three per patch
-  Numbers first_far, first_near;
-  Fars far;
-  Nears near;
-  Numbers entries;  // four bytes each
-  AllMoments moments_sent, moments_received;
-  // The coarse scene.
-  Numbers cluster_of;
-  Numbers first_of_coarse, of_coarse;  // patches of each cluster
-  Floats response;                     // per channel, column by column
-  Colors power, late;
-  // BC1.
-  Numbers blocks;  // two words each
-  Numbers row, column;
-  Colors row_scale, column_scale;
-  Numbers first_kept;
-  AllKept kept;
-  Floats byte_values;
-  // Places.
-  Numbers first_transfer, transfer_patch;
-  Floats transfer_weight;
-  Colors at_place;
-  // What changes with the lights.
-  Floats radiosity_of_material;  // three per material
+#include "luxel/solve/device/relight_shared.h"
 
-  uint patch_count, coarse_count, blocks_per_row;
-  uint glow_is_kept;
-  vec3 kept_unit;
-};
+layout(local_size_x = kRelightThreads) in;
+layout(constant_id = 0) const uint kStep = 0;
 
-layout(push_constant, scalar) uniform Push {
-  Setup setup;
-  uint first, count;  // of what threads or groups take
-  uint first_group;   // of this dispatch
-  vec3 background;
-};
-
-shared vec3 sums[3][kThreads];
+shared vec3 sums[3][kRelightThreads];
 
 // The sum over the threads of a group, in a fixed order; each thread calls it.
 vec3 sum_over_group(uint which, uint lane) {
-  for (uint half_of = kThreads / 2; half_of > 0; half_of /= 2) {
+  for (uint half_of = kRelightThreads / 2; half_of > 0; half_of /= 2) {
     barrier();
     if (lane < half_of) sums[which][lane] += sums[which][lane + half_of];
   }
@@ -176,7 +102,7 @@ float coefficient(Far far, uint k) { return float(bitfieldExtract(int(far.coeffi
 
 void receive_far(uint c, uint lane) {
   vec3 sum[3] = vec3[3](vec3(0), vec3(0), vec3(0));
-  for (uint k = setup.first_far.at[c] + lane; k < setup.first_far.at[c + 1]; k += kThreads) {
+  for (uint k = setup.first_far.at[c] + lane; k < setup.first_far.at[c + 1]; k += kRelightThreads) {
     Far far = setup.far.at[k];
     Moments from = setup.moments_sent.at[far.sender];
     for (uint b = 0; b < 3; ++b) {
@@ -208,7 +134,7 @@ void receive_leaf(uint c, uint lane) {
   Cluster leaf = setup.clusters.at[c];
   uint own = lane % 8, slice = lane / 8;
   vec3 sum = vec3(0);
-  for (uint k = setup.first_near.at[c] + slice; k < setup.first_near.at[c + 1]; k += kThreads / 8) {
+  for (uint k = setup.first_near.at[c] + slice; k < setup.first_near.at[c + 1]; k += kRelightThreads / 8) {
     Near near = setup.near.at[k];
     Cluster sender = setup.clusters.at[near.sender];
     uint entry = near.entry + own;
@@ -219,7 +145,7 @@ void receive_leaf(uint c, uint lane) {
   barrier();
   uint i = leaf.first + own;
   if (slice != 0 || i >= leaf.end) return;
-  for (uint k = 1; k < kThreads / 8; ++k) sum += sums[0][8 * k + own];
+  for (uint k = 1; k < kRelightThreads / 8; ++k) sum += sums[0][8 * k + own];
   Moments received = setup.moments_received.at[c];
   for (uint a = 0; a < 3; ++a) sum += setup.phi.at[3 * i + a] * received.of[a];
   setup.product.at[i] = max(sum, vec3(0));  // smooth functions may fall below nothing
@@ -227,7 +153,7 @@ void receive_leaf(uint c, uint lane) {
 
 void power_of(uint s, uint lane) {
   vec3 sum = vec3(0);
-  for (uint k = setup.first_of_coarse.at[s] + lane; k < setup.first_of_coarse.at[s + 1]; k += kThreads) {
+  for (uint k = setup.first_of_coarse.at[s] + lane; k < setup.first_of_coarse.at[s + 1]; k += kRelightThreads) {
     uint i = setup.of_coarse.at[k];
     sum += setup.reflectance.at[i] * setup.gathered.at[i] * setup.area.at[i];
   }
@@ -239,7 +165,7 @@ void power_of(uint s, uint lane) {
 void late_of(uint s, uint lane) {
   uint n = setup.coarse_count;
   vec3 sum = vec3(0);
-  for (uint t = lane; t < n; t += kThreads)
+  for (uint t = lane; t < n; t += kRelightThreads)
     sum += vec3(setup.response.at[t * n + s], setup.response.at[n * n + t * n + s],
                 setup.response.at[2 * n * n + t * n + s]) * setup.power.at[t];
   sums[0][lane] = sum;
@@ -260,7 +186,7 @@ vec4 levels_of(uint a, uint b, uint bits) {
 
 vec3 kept_light(uint place, uint lane) {
   vec3 sum = vec3(0);
-  for (uint k = setup.first_kept.at[place] + lane; k < setup.first_kept.at[place + 1]; k += kThreads) {
+  for (uint k = setup.first_kept.at[place] + lane; k < setup.first_kept.at[place + 1]; k += kRelightThreads) {
     Kept kept = setup.kept.at[k];
     vec3 value = vec3(unpackHalf2x16(kept.red_green), unpackHalf2x16(kept.blue_place & 0xffffu).x);
     sum += value * light_at_place(kept.blue_place >> 16);
@@ -272,7 +198,7 @@ vec3 kept_light(uint place, uint lane) {
 void multiply_blocks(uint block_row, uint lane) {
   uint n = setup.patch_count;
   vec3 rest[4] = vec3[4](vec3(0), vec3(0), vec3(0), vec3(0));
-  for (uint b = lane; b < setup.blocks_per_row; b += kThreads) {
+  for (uint b = lane; b < setup.blocks_per_row; b += kRelightThreads) {
     uint at = 2 * (block_row * setup.blocks_per_row + b);
     uint ends = setup.blocks.at[at], indices = setup.blocks.at[at + 1];
     vec4 red = levels_of(ends >> 11 & 31, ends >> 27 & 31, 5), green = levels_of(ends >> 5 & 63, ends >> 21 & 63, 6),
@@ -332,7 +258,7 @@ void advance_patch(uint i) {
 }
 
 void main() {
-  uint lane = gl_LocalInvocationID.x, group = first_group + gl_WorkGroupID.x, k = group * kThreads + lane;
+  uint lane = gl_LocalInvocationID.x, group = first_group + gl_WorkGroupID.x, k = group * kRelightThreads + lane;
   switch (kStep) {
     case kReceiveFar: receive_far(first + group, lane); return;
     case kReceiveLeaves: receive_leaf(setup.leaves.at[first + group], lane); return;

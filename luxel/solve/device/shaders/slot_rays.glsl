@@ -1,6 +1,5 @@
 // The rays of a slot.
 #include "element_rays.glsl"
-#include "ray_slots.glsl"
 
 uint doublings_of(AllShares all, uint shares, uint cell) {
   return shares == 0 ? 0 : all.at[(shares - 1) * 8 + cell / 8] >> (cell % 8 * 4) & 15u;
@@ -18,10 +17,6 @@ uint first_place(RaySlot s, AllShares all, uint cell, uvec2 plain) {
   return count;
 }
 
-// What the seeds of all rays are made of: of plain ones, and of those that follow a guide.
-struct RaySeeds {
-  uvec2 plain, guided;
-};
 uvec2 seed_of_slot(RaySlot s, RaySeeds seeds) {
   return hash64(s.shares == 0 ? seeds.plain : seeds.guided, uvec2(s.element, 0));
 }

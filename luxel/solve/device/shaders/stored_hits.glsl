@@ -1,7 +1,5 @@
 // Where rays land in the lightmap, in eight bytes: luxel/solve/gather/rays/hit_store.h, and landings.h
 // beside this folder.
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
 
 // The lower half of gather::StoredHit's bits in x. What lands nowhere reads no texel (its base and
 // both fractions are 0), and has one of these numbers where others have their tint.
@@ -30,5 +28,3 @@ float weight_of(uvec2 hit) { return uintBitsToFloat((127 - (hit.x >> 12 & 7u)) <
 
 // gather::unpack_tint()
 vec3 unpack_tint(uint tint) { return vec3(tint >> 7, tint >> 3 & 15u, tint & 7u) / vec3(15, 15, 7); }
-
-layout(buffer_reference, scalar) buffer StoredHits { uvec2 at[]; };

@@ -2,38 +2,9 @@
 // thread takes a slot. luxel/solve/gather/bounce/sweep.h, ../device_sweep.h
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "ray_slots.glsl"
+#include "luxel/solve/device/sweep_shared.h"
 #include "stored_hits.glsl"
-layout(local_size_x = 64) in;
-
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Map { vec4 at[]; };
-layout(buffer_reference, scalar) readonly buffer Ends { uint at[]; };
-// gather::Gathered
-struct Gathered {
-  vec3 sum;
-  float sum_luminance2, first_less_second;
-};
-layout(buffer_reference, scalar) buffer AllGathered { Gathered at[]; };
-
-// Per element, the first round that counts, and in the second byte the last one that added rays.
-layout(buffer_reference, scalar) readonly buffer CountedRounds { uint at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  Map map;  // gather::RadiosityMap
-  AllGathered gathered;
-  CountedRounds counted;
-  // What the round has:
-  StoredHits more;  // of all elements, one element's after another's
-  Ends ends;        // per element, one past the last of `more`
-  // What the chunk has:
-  RaySlots slots;
-  TileRows rows;
-  StoredHits hits;
-  uint slot_count;
-  uint map_stride;
-  uint round;
-  uint first_group;
-};
+layout(local_size_x = kRaysTogether) in;
 
 // gather::lookup()
 vec3 lookup(uvec2 hit) {
@@ -57,7 +28,7 @@ void add(uvec2 hit, bool is_last_round, inout Gathered g) {
 }
 
 void main() {
-  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, own = tile * 64 + lane;
+  uint tile = first_group + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, own = tile * kRaysTogether + lane;
   if (own >= slot_count) return;
   RaySlot slot = slots.at[own];
   uint i = slot.element, count = counted.at[i];
@@ -65,7 +36,7 @@ void main() {
   bool is_last_round = round == count >> 8;
   Gathered g = Gathered(vec3(0), 0, 0);
   for (uint place = 0; place < slot.places; ++place) {
-    uvec2 hit = hits.at[(rows.at[tile] + place) * 64 + lane];
+    uvec2 hit = hits.at[(rows.at[tile] + place) * kRaysTogether + lane];
     if (hit.y != 0 || hit.x >> 15 != 0) add(hit, is_last_round, g);  // else it landed nowhere
   }
   for (uint k = i == 0 ? 0 : ends.at[i - 1]; k < ends.at[i]; ++k) add(more.at[k], is_last_round, g);

@@ -7,7 +7,9 @@
 
 #include "luxel/base/check.h"
 #include "luxel/gpu/pieces.h"
+#include "luxel/reference/device/eye_push_shared.h"
 #include "luxel/reference/device/path_buffers.h"
+#include "luxel/reference/device/path_push_shared.h"
 #include "luxel/reference/device/shaders/eye.comp.h"
 #include "luxel/reference/device/shaders/paths.comp.h"
 #include "luxel/reference/sums.h"
@@ -18,19 +20,14 @@
 namespace luxel::reference {
 namespace {
 
-constexpr size_t kGroup = 64;  // as the shaders have it
 /// Threads that are under way at a time, at most, and about as many as there should be.
 constexpr size_t kMostItems = size_t(1) << 18, kEnoughItems = size_t(1) << 16;
 /// Paths that a thread follows before the next dispatch.
 constexpr uint32_t kPathsAtATime = 4;
 
-// Structs of shaders/paths.glsl, eye.glsl and camera.glsl.
+using on_device::EyePush, on_device::kPathThreads, on_device::PathPush, on_device::PathSums;
 
-struct DeviceSums {
-  Sums sums;
-  uint32_t rays = 0, back = 0, double_sided_back = 0, covered = 0;
-};
-static_assert(sizeof(DeviceSums) == 80 && sizeof(Receiver) == 36);
+static_assert(sizeof(Receiver) == 36);  // as shaders/paths.comp reads it
 
 /// Those of all paths of a receiver or a pixel.
 struct AllPaths {
@@ -38,42 +35,12 @@ struct AllPaths {
   uint64_t rays = 0;
   uint32_t back = 0, double_sided_back = 0, covered = 0;
 
-  void add(const DeviceSums& some) {
-    sums.add(some.sums), rays += some.rays, covered += some.covered;
+  void add(const PathSums& some) {
+    sums.add({some.r, some.g, some.b, some.l, some.r2, some.g2, some.b2, some.l2});
+    rays += some.rays, covered += some.covered;
     back += some.back, double_sided_back += some.double_sided_back;
   }
 };
-
-struct DeviceCamera {
-  Vec3 eye, right, up, forward;
-  float width, height;
-  uint32_t orthographic;
-};
-static_assert(sizeof(DeviceCamera) == 60);
-
-struct PathPush {
-  VkDeviceAddress setup, camera, eye_hits, places, first_place, sums;
-  uint32_t seed_low, seed_high;
-  uint32_t first_item = 0, item_count = 0;
-  uint32_t slices, samples_of_slice, samples;
-  uint32_t first_sample = 0, sample_count = 0;
-  int32_t bounces;
-  uint32_t flags;
-  uint32_t first_group = 0;
-
-  static constexpr uint32_t kPicture = 1, kOnePlaceEach = 2;
-};
-static_assert(sizeof(PathPush) == 96);
-
-struct EyePush {
-  VkDeviceAddress setup, camera, hits;
-  uint32_t seed_low, seed_high;
-  uint32_t first_pixel, item_count, slices, samples_of_slice, samples;
-  uint32_t first_sample;
-  uint32_t first_group = 0;
-  uint32_t unused = 0;
-};
-static_assert(sizeof(EyePush) == 64);
 
 /// The division of each receiver's or pixel's paths into `count` slices, a thread for each.
 struct Slices {
@@ -113,7 +80,7 @@ struct DevicePathTracer::Impl {
   std::optional<trace::DeviceRayTracer> tracer{};
   PathBuffersOnDevice world{};
   gpu::Pipeline paths{}, eye{};
-  gpu::PieceSize paths_piece{kGroup}, eye_piece{kGroup};
+  gpu::PieceSize paths_piece{kPathThreads}, eye_piece{kPathThreads};
   gpu::Buffer sums{}, sums_back{}, hits{};
 
   using Take = std::function<void(size_t i, const AllPaths& paths)>;
@@ -128,9 +95,8 @@ struct DevicePathTracer::Impl {
 Status DevicePathTracer::Impl::make_room(size_t items, bool with_hits) {
   constexpr std::string_view kWhat = "the buffer of paths";
   using gpu::Access;
-  LUXEL_TRY(sums, gpu::make_buffer(device, items * sizeof(DeviceSums), Access::device, kWhat));
-  LUXEL_TRY(sums_back,
-            gpu::make_buffer(device, items * sizeof(DeviceSums), Access::to_host, kWhat));
+  LUXEL_TRY(sums, gpu::make_buffer(device, items * sizeof(PathSums), Access::device, kWhat));
+  LUXEL_TRY(sums_back, gpu::make_buffer(device, items * sizeof(PathSums), Access::to_host, kWhat));
   const size_t bytes = with_hits ? items * sizeof(on_device::Hit) : 16;
   LUXEL_TRY(hits, gpu::make_buffer(device, bytes, Access::device, kWhat));
   return {};
@@ -145,8 +111,8 @@ Result<gpu::Buffer> DevicePathTracer::Impl::uploaded_bytes(std::span<const std::
 /// All paths of some items: their sums lie in sums_back then.
 Status DevicePathTracer::Impl::follow_some(PathPush push, const Slices& slices,
                                            Progress& progress) {
-  const size_t groups = (push.item_count + kGroup - 1) / kGroup;
-  const bool picture = (push.flags & PathPush::kPicture) != 0;
+  const size_t groups = (push.item_count + kPathThreads - 1) / kPathThreads;
+  const bool picture = (push.flags & on_device::kPicture) != 0;
   LUXEL_TRY_STATUS(commands->run([&](VkCommandBuffer c) {
     device.vk.vkCmdFillBuffer(c, sums.buffer.get(), 0, VK_WHOLE_SIZE, 0);
   }));
@@ -159,14 +125,14 @@ Status DevicePathTracer::Impl::follow_some(PathPush push, const Slices& slices,
       const EyePush look{.setup = push.setup,
                          .camera = push.camera,
                          .hits = push.eye_hits,
-                         .seed_low = push.seed_low,
-                         .seed_high = push.seed_high,
+                         .seed = push.seed,
                          .first_pixel = push.first_item,
                          .item_count = push.item_count,
                          .slices = push.slices,
                          .samples_of_slice = push.samples_of_slice,
                          .samples = push.samples,
-                         .first_sample = first};
+                         .first_sample = first,
+                         .first_group = 0};
       LUXEL_TRY([[maybe_unused]] const double looked,
                 gpu::run_groups(*commands, eye, look, groups, eye_piece, &progress));
     }
@@ -174,7 +140,7 @@ Status DevicePathTracer::Impl::follow_some(PathPush push, const Slices& slices,
               gpu::run_groups(*commands, paths, push, groups, paths_piece, &progress));
     progress.advance(push.item_count / slices.count * paths_of(push, slices));
   }
-  return gpu::copy_bytes(*commands, sums, sums_back, push.item_count * sizeof(DeviceSums));
+  return gpu::copy_bytes(*commands, sums, sums_back, push.item_count * sizeof(PathSums));
 }
 
 /// Hands on what the paths of each of `count` receivers or pixels have summed to.
@@ -183,17 +149,17 @@ Status DevicePathTracer::Impl::follow_all(size_t count, const PathParams& params
   if (count == 0) return {};
   const Slices slices = slices_of(count, params.samples);
   const size_t at_a_time = std::max<size_t>(kMostItems / slices.count, 1);
-  LUXEL_TRY_STATUS(
-      make_room(std::min(at_a_time, count) * slices.count, (push.flags & PathPush::kPicture) != 0));
+  LUXEL_TRY_STATUS(make_room(std::min(at_a_time, count) * slices.count,
+                             (push.flags & on_device::kPicture) != 0));
   push.setup = world.setup.address, push.sums = sums.address, push.eye_hits = hits.address;
-  push.seed_low = uint32_t(params.seed), push.seed_high = uint32_t(params.seed >> 32);
+  push.seed = on_device::halves(params.seed);
   push.slices = uint32_t(slices.count), push.samples_of_slice = slices.samples_of_each;
   push.samples = uint32_t(params.samples), push.bounces = params.bounces;
   for (size_t first = 0; first < count; first += at_a_time) {
     const size_t some = std::min(at_a_time, count - first);
     push.first_item = uint32_t(first), push.item_count = uint32_t(some * slices.count);
     LUXEL_TRY_STATUS(follow_some(push, slices, progress));
-    const auto* found = reinterpret_cast<const DeviceSums*>(sums_back.mapped);
+    const auto* found = reinterpret_cast<const PathSums*>(sums_back.mapped);
     for (size_t i = 0; i < some; ++i) {
       AllPaths all;
       for (size_t k = i * slices.count; k < (i + 1) * slices.count; ++k) all.add(found[k]);
@@ -249,7 +215,7 @@ Result<TexelPaths> DevicePathTracer::irradiance(const Receivers& receivers,
   LUXEL_TRY(const gpu::Buffer first, my.uploaded_bytes(std::as_bytes(receivers.first)));
   PathPush push{};
   push.places = at.address, push.first_place = first.address;
-  push.flags = receivers.first.empty() ? PathPush::kOnePlaceEach : 0;
+  push.flags = receivers.first.empty() ? on_device::kOnePlaceEach : 0;
   TexelPaths out;
   out.irradiance.resize(count), out.standard_error.resize(count), out.luminance_error.resize(count);
   out.met_back.resize(count), out.met_double_sided_back.resize(count), out.enclosed.resize(count);
@@ -275,11 +241,11 @@ Result<Picture> DevicePathTracer::radiance(const scene::Camera& camera, int widt
   Impl& my = *impl_;
   LUXEL_CHECK(params.samples >= 1 && width > 0 && height > 0);
   const trace::CameraRays rays(camera, width, height);
-  const DeviceCamera values{rays.eye,   rays.right,  rays.up,          rays.forward,
-                            rays.width, rays.height, rays.orthographic};
+  const on_device::Camera values{rays.eye,   rays.right,  rays.up,          rays.forward,
+                                 rays.width, rays.height, rays.orthographic};
   LUXEL_TRY(const gpu::Buffer seen_by, my.uploaded_bytes(std::as_bytes(std::span(&values, 1))));
   PathPush push{};
-  push.camera = seen_by.address, push.flags = PathPush::kPicture;
+  push.camera = seen_by.address, push.flags = on_device::kPicture;
   const size_t count = size_t(width) * size_t(height);
   Picture out;
   out.radiance = image::Image(width, height, 4);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "luxel/reference/device/paths_shared.h"
 #include "luxel/scene/facet.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/trace/vulkan/device_pictures.h"
@@ -11,55 +12,7 @@
 namespace luxel::reference {
 namespace {
 
-// Structs of shaders/world_of_paths.glsl.
-
-struct PathTriangle {
-  std::array<Vec3, 3> corner, normal, color;
-  std::array<float, 3> alpha;
-  Vec3 front;
-  std::array<Vec2, 3> base, metal, emission;
-  uint32_t material;
-  uint32_t flags;
-  uint32_t other_side;
-  float pdf_area;
-  float size_m;
-  float size_for_rounding_m;
-
-  static constexpr uint32_t kBasePlaced = 1, kMetalPlaced = 2, kEmissionPlaced = 4, kCurved = 8,
-                            kBends = 16;
-};
-static_assert(sizeof(PathTriangle) == 228);
-
-struct PathMaterial {
-  Rgb base_color, emission;
-  float alpha, cutoff, metallic;
-  uint32_t flags;
-  on_device::Picture base, metal, emission_picture;
-
-  static constexpr uint32_t kDoubleSided = 1, kUnlit = 2, kMasked = 4, kFromBehind = 8;
-};
-static_assert(sizeof(PathMaterial) == 112);
-
-struct PathLight {
-  Rgb intensity;
-  Vec3 position, direction;
-  float range_m, outer_cosine, ramp;
-  float disc_height;
-  float reach;
-  uint32_t kind, has_disc;
-};
-static_assert(sizeof(PathLight) == 64);
-
-struct PathSetup {
-  on_device::World world;
-  VkDeviceAddress triangles, materials, texels, linear_of_byte, emitters, chance_below, lights,
-      row_below, column_below, pixels;
-  Rgb background;
-  float rotation_rad;
-  int32_t map_width, map_height;
-  uint32_t emitter_count, light_count;
-};
-static_assert(sizeof(PathSetup) == 152);
+using on_device::PathLight, on_device::PathMaterial, on_device::PathSetup, on_device::PathTriangle;
 
 template <class T>
 Result<gpu::Buffer> uploaded(gpu::Commands& commands, std::span<const T> values) {
@@ -89,15 +42,15 @@ PathTriangle path_triangle(const TracedScene& world, uint32_t instance, uint32_t
     if (!mesh.normals.empty())
       t.normal[k] = transform_normal(placed.world_from_object, mesh.normals[vertex]);
   }
-  if (world.surfaces.curved[number]) t.flags |= PathTriangle::kCurved;
-  if (!mesh.normals.empty() && bends(t.normal, t.front)) t.flags |= PathTriangle::kBends;
+  if (world.surfaces.curved[number]) t.flags |= on_device::kCurved;
+  if (!mesh.normals.empty() && bends(t.normal, t.front)) t.flags |= on_device::kBends;
   const auto place = [&](const scene::TextureRef& ref, std::array<Vec2, 3>& to, uint32_t flag) {
     to = trace::places_in_picture(mesh, triangle, ref);
     if (!trace::texture_coordinates(mesh, ref).empty()) t.flags |= flag;
   };
-  place(m.base_color_texture, t.base, PathTriangle::kBasePlaced);
-  place(m.metallic_texture, t.metal, PathTriangle::kMetalPlaced);
-  place(m.emission_texture, t.emission, PathTriangle::kEmissionPlaced);
+  place(m.base_color_texture, t.base, on_device::kBasePlaced);
+  place(m.metallic_texture, t.metal, on_device::kMetalPlaced);
+  place(m.emission_texture, t.emission, on_device::kEmissionPlaced);
   t.material = mesh.triangle_material[triangle];
   const bool is_sheet = !mesh.other_side.empty() && mesh.other_side[triangle] != scene::kNone;
   t.other_side = is_sheet ? world.surfaces.number(instance, mesh.other_side[triangle])
@@ -117,10 +70,10 @@ std::vector<PathTriangle> path_triangles(const TracedScene& world) {
 }
 
 PathMaterial path_material(const scene::Material& m, trace::DevicePictures& pictures) {
-  const uint32_t flags = (m.double_sided ? PathMaterial::kDoubleSided : 0) |
-                         (m.unlit ? PathMaterial::kUnlit : 0) |
-                         (m.alpha_mode == scene::AlphaMode::mask ? PathMaterial::kMasked : 0) |
-                         (scene::reflects_from_behind(m) ? PathMaterial::kFromBehind : 0);
+  const uint32_t flags = (m.double_sided ? on_device::kDoubleSided : 0) |
+                         (m.unlit ? on_device::kUnlit : 0) |
+                         (m.alpha_mode == scene::AlphaMode::mask ? on_device::kMasked : 0) |
+                         (scene::reflects_from_behind(m) ? on_device::kReflectsFromBehind : 0);
   return {m.base_color,
           m.emission,
           m.alpha,

@@ -1,9 +1,4 @@
-// trace::CameraRays
-layout(buffer_reference, scalar) buffer Camera {
-  vec3 eye, right, up, forward;
-  float width, height;
-  uint orthographic;
-};
+// Rays of a camera.
 
 uvec2 path_seed(uvec2 seed, uint item, uint own_sample) {
   return hash64(hash64(seed, uvec2(item, 0)), uvec2(own_sample, 0));

@@ -5,24 +5,15 @@
 #include "luxel/trace/vulkan/shaders/hierarchy.glsl"
 #include "world_of_paths.glsl"
 #include "camera.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = kPathThreads) in;
 
-layout(buffer_reference, scalar) writeonly buffer Hits { Hit at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  Setup setup;
-  Camera camera;
-  Hits hits;  // of the items
-  uvec2 seed;
-  uint first_pixel, item_count, slices, samples_of_slice, samples;
-  uint first_sample;  // of each slice
-  uint first_group;
-};
+OUT_BUFFER(Hits, Hit);
+#include "luxel/reference/device/eye_push_shared.h"
 
 const int kMostSurfaces = 64;
 
 void main() {
-  uint item = (first_group + gl_WorkGroupID.x) * 64 + gl_LocalInvocationID.x;
+  uint item = (first_group + gl_WorkGroupID.x) * kPathThreads + gl_LocalInvocationID.x;
   if (item >= item_count) return;
   uint pixel = first_pixel + item / slices, own_sample = item % slices * samples_of_slice + first_sample;
   Hit hit = Hit(kInfinity, 0, 0, kNoTriangle);

@@ -7,36 +7,13 @@
 #include "luxel/base/both_triangle.h"
 #include "world_of_paths.glsl"
 #include "camera.glsl"
-layout(local_size_x = 64) in;
+layout(local_size_x = kPathThreads) in;
 
 // A point at which receivers ask for light.
-layout(buffer_reference, scalar) readonly buffer Places { Place at[]; };
-layout(buffer_reference, scalar) readonly buffer Hits { Hit at[]; };
+IN_BUFFER(Places, Place);
+IN_BUFFER(Hits, Hit);
 
-// reference::Sums of some paths, how many rays they took, and what their first ones met.
-struct Sums {
-  double r, g, b, l, r2, g2, b2, l2;
-  uint rays, back, double_sided_back, covered;
-};
-layout(buffer_reference, scalar) buffer AllSums { Sums at[]; };
-
-layout(push_constant, scalar) uniform Push {
-  Setup setup;
-  Camera camera;   // of pictures
-  Hits eye_hits;   // of pictures: of each item
-  Places places;   // of receivers
-  Numbers first_place;  // of receivers: of each one; or one each, if there are none
-  AllSums sums;    // of the items
-  uvec2 seed;
-  uint first_item;  // receiver or pixel
-  uint item_count;  // slices of receivers or pixels
-  uint slices, samples_of_slice, samples;
-  uint first_sample, sample_count;  // of each slice: those of this dispatch
-  int bounces;
-  uint flags;
-  uint first_group;
-};
-const uint kPicture = 1, kOnePlaceEach = 2;
+#include "luxel/reference/device/path_push_shared.h"
 
 // Paths of fewer reflections than this are never ended by chance.
 const int kSureBounces = 8;
@@ -235,7 +212,7 @@ bool survives(inout Path path, int reflections) {
 }
 
 // Takes the light that the path's ray has found and moves the path there. False when it ends.
-bool advance(inout Path path, vec3 d, Hit hit, int depth, inout Sums sum) {
+bool advance(inout Path path, vec3 d, Hit hit, int depth, inout PathSums sum) {
   if (hit.number == kNoTriangle) {
     add_found_sky(path, d);
     return false;
@@ -244,7 +221,7 @@ bool advance(inout Path path, vec3 d, Hit hit, int depth, inout Sums sum) {
   PathTriangle t = setup.triangles.at[side.number];
   PathMaterial m = setup.materials.at[t.material];
   if (side.back) {
-    bool two_sided = (m.flags & kFromBehind) != 0;
+    bool two_sided = (m.flags & kReflectsFromBehind) != 0;
     if (depth == 0 && two_sided) ++sum.double_sided_back;
     if (depth == 0 && !two_sided) ++sum.back;
     if (!two_sided) return false;
@@ -258,7 +235,7 @@ bool advance(inout Path path, vec3 d, Hit hit, int depth, inout Sums sum) {
 }
 
 // One bounce: a random direction, and rays towards each kind of light; the shader traces in one place.
-bool bounce(inout Path path, int depth, inout Sums sum) {
+bool bounce(inout Path path, int depth, inout PathSums sum) {
   vec2 u = next_vec2(path.random);
   vec2 circle = unit_circle(u.x);
   float r = sqrt(u.y);
@@ -286,7 +263,7 @@ bool bounce(inout Path path, int depth, inout Sums sum) {
 }
 
 // A path from what a camera's ray has met. False where it ends at once.
-bool start_from_eye(Hit hit, vec3 d, inout Path path, inout Sums sum) {
+bool start_from_eye(Hit hit, vec3 d, inout Path path, inout PathSums sum) {
   path.throughput = vec3(1), path.value = vec3(0);
   if (hit.number == kNoTriangle) {
     path.value = setup.background;
@@ -318,17 +295,17 @@ void start_from_place(uint item, uint own_sample, inout Path path) {
   path.random = Random(path_seed(seed, item, own_sample), 0);
 }
 
-void add(inout Sums sum, vec3 value) {
+void add(inout PathSums sum, vec3 value) {
   double x = value.x, y = value.y, z = value.z, l = luminance(value);
   sum.r += x, sum.g += y, sum.b += z, sum.l += l;
   sum.r2 += x * x, sum.g2 += y * y, sum.b2 += z * z, sum.l2 += l * l;
 }
 
 void main() {
-  uint k = (first_group + gl_WorkGroupID.x) * 64 + gl_LocalInvocationID.x;
+  uint k = (first_group + gl_WorkGroupID.x) * kPathThreads + gl_LocalInvocationID.x;
   if (k >= item_count) return;
   uint item = first_item + k / slices, begin = k % slices * samples_of_slice;
-  Sums sum = sums.at[k];
+  PathSums sum = sums.at[k];
   for (uint s = first_sample; s < first_sample + sample_count; ++s) {
     if (s >= samples_of_slice || begin + s >= samples) break;
     Path path;

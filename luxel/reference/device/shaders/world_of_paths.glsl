@@ -1,65 +1,13 @@
-// Everything that paths look at: ../path_buffers.cpp has the structs.
+// Everything that paths look at.
 #include "luxel/base/both_directions.h"
 #include "luxel/base/both_sobol.h"
+#include "luxel/reference/device/paths_shared.h"
 #include "luxel/trace/vulkan/shaders/frame.glsl"
 
 const float kPi = 3.14159265358979323846;
 #define kInfinity uintBitsToFloat(0x7f800000u)
 
-// A drawn triangle.
-struct PathTriangle {
-  vec3 corner[3];
-  vec3 normal[3];  // of the vertices, of any length
-  vec3 color[3];   // of the vertices
-  float alpha[3];  // of the vertices
-  vec3 front;      // unit
-  vec2 base[3], metal[3], emission[3];  // in the pictures
-  uint material;
-  uint flags;
-  uint other_side;  // of a sheet: its number; or kNoTriangle
-  float pdf_area;   // with which its points are picked; 0: never
-  float size_m;     // the root of its area
-  float size_for_rounding_m;
-};
-const uint kBasePlaced = 1, kMetalPlaced = 2, kEmissionPlaced = 4, kCurved = 8, kBends = 16;
-struct PathMaterial {
-  vec3 base_color, emission;
-  float alpha, cutoff, metallic;
-  uint flags;
-  Picture base, metal, emission_picture;
-};
-const uint kDoubleSided = 1, kUnlit = 2, kMasked = 4, kFromBehind = 8;
 const uint kPoint = 0, kSpot = 1, kDirectional = 2;  // scene::PunctualLight::Kind
-struct PathLight {
-  vec3 intensity, position, direction;
-  float range_m, outer_cosine, ramp;  // ramp: between the cosines of both cones
-  float disc_height;                  // 1 - cos(half of the disc's angle)
-  float reach;                        // the sine of half of it
-  uint kind, has_disc;
-};
-layout(buffer_reference, scalar) readonly buffer PathTriangles { PathTriangle at[]; };
-layout(buffer_reference, scalar) readonly buffer PathMaterials { PathMaterial at[]; };
-layout(buffer_reference, scalar) readonly buffer PathLights { PathLight at[]; };
-layout(buffer_reference, scalar) readonly buffer Doubles { double at[]; };
-layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
-layout(buffer_reference, scalar) readonly buffer MapPixels { vec3 at[]; };
-
-layout(buffer_reference, scalar) buffer Setup {
-  World world;
-  PathTriangles triangles;
-  PathMaterials materials;
-  Texels texels;
-  Floats linear_of_byte;  // of sRGB
-  Numbers emitters;       // triangles
-  Doubles chance_below;   // of each emitter; one more entry
-  PathLights lights;
-  Doubles row_below, column_below;  // reference::SkySampler
-  MapPixels pixels;
-  vec3 background;
-  float rotation_rad;
-  int map_width, map_height;  // 0: no map
-  uint emitter_count, light_count;
-};
 
 // A side of a surface that a ray has met.
 struct Side {
@@ -69,7 +17,7 @@ struct Side {
 };
 
 // What has two sides is met on the side that the ray comes from: trace::DeviceRayTracer::hit_of().
-Side side_of(Setup setup, Hit hit) {
+Side side_of(PathSetup setup, Hit hit) {
   Side s = Side(hit.number & ~kBackFace, vec2(hit.u, hit.v), (hit.number & kBackFace) != 0);
   uint other = setup.triangles.at[s.number].other_side;
   if (s.back && other != kNoTriangle) s = Side(other, s.uv.yx, false);
@@ -81,24 +29,24 @@ float largest(vec3 c) { return max(c.x, max(c.y, c.z)); }
 vec3 between(vec3 values[3], vec2 uv) { return values[0] * (1 - uv.x - uv.y) + values[1] * uv.x + values[2] * uv.y; }
 
 // scene::base_color_at()
-vec4 base_color_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+vec4 base_color_at(PathSetup setup, PathTriangle t, PathMaterial m, vec2 uv) {
   vec4 c = colour_at(setup.texels, setup.linear_of_byte, m.base, (t.flags & kBasePlaced) != 0, t.base, uv);
   return vec4(c.xyz * (m.base_color * between(t.color, uv)), c.w * (m.alpha * alpha_between(t.alpha, uv)));
 }
 
 // scene::reflectance_at(), of what scatters no light through.
-vec3 reflectance_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+vec3 reflectance_at(PathSetup setup, PathTriangle t, PathMaterial m, vec2 uv) {
   float metal = m.metallic * picture_at(setup.texels, m.metal, (t.flags & kMetalPlaced) != 0, t.metal, uv, 2);
   return clamp(base_color_at(setup, t, m, uv).xyz * (1 - clamp(metal, 0.0, 1.0)), vec3(0), vec3(0.99));
 }
 
-vec3 emission_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+vec3 emission_at(PathSetup setup, PathTriangle t, PathMaterial m, vec2 uv) {
   if (largest(m.emission) <= 0) return vec3(0);
   return m.emission * colour_at(setup.texels, setup.linear_of_byte, m.emission_picture, (t.flags & kEmissionPlaced) != 0, t.emission, uv).xyz;
 }
 
 // scene::passage_at(), of masks alone.
-float coverage_at(Setup setup, PathTriangle t, PathMaterial m, vec2 uv) {
+float coverage_at(PathSetup setup, PathTriangle t, PathMaterial m, vec2 uv) {
   return (m.flags & kMasked) != 0 && base_color_at(setup, t, m, uv).w < m.cutoff ? 0.0 : 1.0;
 }
 

@@ -5,18 +5,11 @@
 #include "luxel/base/check.h"
 #include "luxel/image/color.h"
 #include "luxel/image/flip.h"
+#include "luxel/view/draw/beside_shared.h"
 #include "luxel/view/model/look.h"
 
 namespace luxel::view {
 namespace {
-
-// The push constants of shaders/beside.frag, in scalar layout.
-struct BesidePush {
-  VkDeviceAddress colors;
-  uint32_t mode;
-  float line_at, highest;
-};
-static_assert(sizeof(BesidePush) == 24);  // as painter.cpp has it
 
 /// All that put_together() looks up.
 std::array<const gpu::Picture*, 4> pictures_of(const Painter& first, const Painter& second) {
@@ -80,8 +73,9 @@ void put_together(const gpu::Device& device, VkCommandBuffer commands, const Can
   for (const gpu::Picture* picture : pictures)
     gpu::change_layout(device, commands, *picture, kCopied, kRead);
   gpu::begin_drawing(device, commands, pair.shown, {0, 0, 0, 1});
-  const BesidePush push{pair.colors.address, uint32_t(frame.beside->mode),
-                        frame.beside->split * float(pair.shown.params.width), kMostDifference};
+  const on_device::BesidePush push{pair.colors.address, uint32_t(frame.beside->mode),
+                                   frame.beside->split * float(pair.shown.params.width),
+                                   kMostDifference};
   gpu::bind(device, commands, first.shaders.beside, push);
   gpu::bind_set(device, commands, first.shaders.beside, pair.sets.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);

@@ -5,14 +5,14 @@
 namespace luxel::view {
 namespace {
 
-DeviceMaterial& material_on(DeviceScene& scene, size_t material) {
-  LUXEL_CHECK((material + 1) * sizeof(DeviceMaterial) <= scene.materials.size);
-  return reinterpret_cast<DeviceMaterial*>(scene.materials.mapped)[material];
+on_device::Material& material_on(DeviceScene& scene, size_t material) {
+  LUXEL_CHECK((material + 1) * sizeof(on_device::Material) <= scene.materials.size);
+  return reinterpret_cast<on_device::Material*>(scene.materials.mapped)[material];
 }
 
-DeviceInstance& instance_on(DeviceScene& scene, uint32_t instance) {
+on_device::Instance& instance_on(DeviceScene& scene, uint32_t instance) {
   LUXEL_CHECK(instance < scene.mesh_of.size());
-  return reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance];
+  return reinterpret_cast<on_device::Instance*>(scene.instances.mapped)[instance];
 }
 
 }  // namespace
@@ -32,7 +32,9 @@ void set_metallic(size_t material, float metallic, DeviceScene& scene) {
 }
 
 void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene) {
-  instance_on(scene, instance).rows = rows_of(world_from_object);
+  on_device::Instance& to = instance_on(scene, instance);
+  const auto& row = world_from_object.row;
+  to.row0 = row[0], to.row1 = row[1], to.row2 = row[2];
   scene.is_mirrored[instance] = determinant(world_from_object) < 0;
 }
 

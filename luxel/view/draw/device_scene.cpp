@@ -14,7 +14,7 @@ namespace luxel::view {
 namespace {
 
 /// scene::transformed_uv() as two rows that are multiplied by (u, v, 1).
-DeviceLookUp look_up_of(const scene::TextureRef& ref) {
+on_device::LookUp look_up_of(const scene::TextureRef& ref) {
   const Vec2 o = scene::transformed_uv(ref, {0, 0});
   const Vec2 u = scene::transformed_uv(ref, {1, 0}), v = scene::transformed_uv(ref, {0, 1});
   return {{u.x - o.x, v.x - o.x, o.x}, {u.y - o.y, v.y - o.y, o.y}, uint32_t(ref.uv_set)};
@@ -101,7 +101,7 @@ struct LitMesh {
   std::span<const Vec2> light_uv;
 };
 
-DeviceVertex vertex_of(const LitMesh& lit, uint32_t i) {
+on_device::Vertex vertex_of(const LitMesh& lit, uint32_t i) {
   const scene::Mesh& mesh = lit.mesh;
   const Vec2 light = lit.light_uv.empty() ? Vec2{} : lit.light_uv[i];
   return {mesh.positions[i],
@@ -116,7 +116,7 @@ DeviceVertex vertex_of(const LitMesh& lit, uint32_t i) {
 
 /// Triangles of all meshes in the making.
 struct Triangles {
-  std::vector<DeviceVertex> vertices;
+  std::vector<on_device::Vertex> vertices;
   std::vector<uint32_t> indices;
 };
 
@@ -126,7 +126,7 @@ void add_two_sided(const LitMesh& lit, uint32_t triangle, Triangles& out) {
   const auto& front = lit.mesh.triangles[triangle];
   const auto& back = lit.mesh.triangles[lit.mesh.other_side[triangle]];
   for (const size_t corner : {0, 1, 2}) {
-    DeviceVertex vertex = vertex_of(lit, front[corner]);
+    on_device::Vertex vertex = vertex_of(lit, front[corner]);
     vertex.light_behind = lit.light_uv[back[(3 - corner) % 3]];
     out.indices.push_back(uint32_t(out.vertices.size()));
     out.vertices.push_back(vertex);
@@ -163,10 +163,10 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
     const LitMesh lit{mesh, light_uv.empty() ? mesh.uv1 : light_uv[m]};
     out.ranges.push_back(add_mesh(scene, lit, triangles));
   }
-  std::vector<DeviceInstance> instances;
+  std::vector<on_device::Instance> instances;
   for (const scene::Instance& instance : scene.instances) {
     const Mat34& m = instance.world_from_object;
-    instances.emplace_back().rows = rows_of(m);
+    instances.push_back({m.row[0], m.row[1], m.row[2], {1, 1, 1}});
     out.mesh_of.push_back(instance.mesh);
     out.is_mirrored.push_back(determinant(m) < 0);
   }
@@ -178,8 +178,8 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
   return {};
 }
 
-DeviceMaterial device_material(const scene::Material& m, size_t page) {
-  DeviceMaterial out;
+on_device::Material device_material(const scene::Material& m, size_t page) {
+  on_device::Material out{};
   out.base_color = m.base_color, out.alpha = m.alpha;
   out.emission = m.emission, out.metallic = m.metallic;
   out.cutoff = m.alpha_mode == scene::AlphaMode::mask ? m.alpha_cutoff : 0;
@@ -199,10 +199,10 @@ using Lights = std::vector<std::array<gpu::Binding, 2>>;
 Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
                           std::span<const image::HalfImage> pages, bool changes, DeviceScene& out) {
   Lights lights;
-  const size_t size = sizeof(LightNow) + pages.size() * 2 * sizeof(float);
+  const size_t size = sizeof(on_device::LightNow) + pages.size() * 2 * sizeof(float);
   LUXEL_TRY(out.light_now,
             gpu::make_buffer(device, size, gpu::Access::from_host, "the scales of light"));
-  light_now(out) = {};
+  light_now(out) = {}, light_now(out).lamp_share = 1;
   for (const image::HalfImage& half : pages) {
     std::array<gpu::Binding, 2>& light = lights.emplace_back();
     for (const size_t which : {0, 1}) {
@@ -223,7 +223,7 @@ Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
 Status put_materials(const gpu::Device& device, Pictures& pictures, const scene::Scene& scene,
                      std::span<const size_t> page_of_material, const Lights& lights,
                      DeviceScene& out) {
-  std::vector<DeviceMaterial> materials;
+  std::vector<on_device::Material> materials;
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
     const size_t page = page_of_material[i];
@@ -295,8 +295,8 @@ std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh) {
   return order;
 }
 
-LightNow& light_now(const DeviceScene& scene) {
-  return *reinterpret_cast<LightNow*>(scene.light_now.mapped);
+on_device::LightNow& light_now(const DeviceScene& scene) {
+  return *reinterpret_cast<on_device::LightNow*>(scene.light_now.mapped);
 }
 
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,

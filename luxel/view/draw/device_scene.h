@@ -10,6 +10,7 @@
 #include "luxel/image/half.h"
 #include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/scene/scene.h"
+#include "luxel/view/draw/scene_shared.h"
 
 namespace luxel::view {
 
@@ -25,18 +26,8 @@ struct DrawRange {
   uint32_t material = 0;
 };
 
-/// Values that change from picture to picture, as shaders/scene.glsl has them.
-struct LightNow {
-  Vec3 eye;
-  uint32_t lamp_count = 0;
-  VkDeviceAddress lamps = 0, maps = 0;  ///< direct_light.h
-  float lamp_share = 1;                 ///< of their light, that is drawn
-  uint32_t unused = 0;
-};
-static_assert(sizeof(LightNow) == 40);
-
 /// A scene's surfaces and their light, ready to be drawn. Structs in its buffers are those of
-/// shaders/surface.glsl.
+/// scene_shared.h.
 struct DeviceScene {
   gpu::Buffer vertices;                        ///< of all meshes
   gpu::Buffer indices;                         ///< 32 bits each, into all vertices
@@ -53,7 +44,7 @@ struct DeviceScene {
   /// E per page of the lightmap, in two pictures: where light changes, the one fades into the
   /// other. Elsewhere they are one.
   std::array<std::vector<const gpu::Picture*>, 2> lights;
-  /// LightNow, then per page, for either picture: E = scale * picture.
+  /// on_device::LightNow, then per page, for either picture: E = scale * picture.
   gpu::Buffer light_now;
   float second_light = 0;  ///< the share of the second pictures in what is shown
 
@@ -108,7 +99,7 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
 /// draw the scene.
 void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene);
 /// Values for the next picture. Nothing may still draw the scene when they are changed.
-LightNow& light_now(const DeviceScene& scene);
+on_device::LightNow& light_now(const DeviceScene& scene);
 
 /// Another place of an instance. Nothing may still draw the scene.
 void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene);

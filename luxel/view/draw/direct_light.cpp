@@ -6,38 +6,22 @@
 
 #include "luxel/gpu/target.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/view/draw/shadow_shared.h"
 #include "luxel/view/shaders/shadow.frag.h"
 #include "luxel/view/shaders/shadow.vert.h"
 
 namespace luxel::view {
 namespace {
 
-// The structs of shaders/scene.glsl, in scalar layout.
-struct DeviceLamp {
-  Rgb intensity;
-  uint32_t kind;
-  Vec3 position;
-  float range_m;
-  Vec3 direction;
-  float cos_outer, cone;
-  uint32_t first_map, map_count, looks_all_round;
-  float tan_radius;
-};
-static_assert(sizeof(DeviceLamp) == 68);
-static_assert(sizeof(ShadowMap) == 84);
+using on_device::ShadowPush;
+
+static_assert(sizeof(ShadowMap) == 84);  // as shaders/scene.glsl reads it
 static_assert(int(scene::PunctualLight::Kind::point) == 0 &&
               int(scene::PunctualLight::Kind::spot) == 1 &&
               int(scene::PunctualLight::Kind::directional) == 2);
 
 /// Wider discs have the shadows of this one [rad].
 constexpr float kWidestDisc = 0.5f;
-
-struct ShadowPush {
-  std::array<float, 16> clip_from_world;
-  VkDeviceAddress vertices, materials, instances;
-  uint32_t instance = 0, material = 0;
-};
-static_assert(sizeof(ShadowPush) == 96);
 
 gpu::DrawParams shadow_params(bool is_masked) {
   gpu::DrawParams params;
@@ -51,7 +35,7 @@ gpu::DrawParams shadow_params(bool is_masked) {
   return params;
 }
 
-DeviceLamp device_lamp(const scene::PunctualLight& l) {
+on_device::Lamp device_lamp(const scene::PunctualLight& l) {
   const float outer = std::cos(l.outer_cone_rad), inner = std::cos(l.inner_cone_rad);
   return {l.intensity,
           uint32_t(l.kind),
@@ -84,8 +68,9 @@ void draw_map(const gpu::Device& device, VkCommandBuffer commands, const DeviceS
   gpu::begin_drawing_depth(device, commands, *scene.shadow_maps.picture,
                            {{int32_t(map.corner.x), int32_t(map.corner.y)}, {side, side}});
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
-  ShadowPush push{map.clip_from_world, scene.vertices.address, scene.materials.address,
-                  scene.instances.address};
+  ShadowPush push{};
+  push.clip_from_world = map.clip_from_world, push.vertices = scene.vertices.address;
+  push.materials = scene.materials.address, push.instances = scene.instances.address;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
       push.material = range.material;
@@ -115,16 +100,16 @@ Status set_lamps(const gpu::Device& device, std::span<const scene::PunctualLight
                  const trace::CameraRays* eye, DirectLight& direct, DeviceScene& scene) {
   direct.plan = plan_shadows(lamps, scene.bounds, scene.shadow_maps.picture->params.width, eye);
   scene.has_soft_shadows = std::any_of(lamps.begin(), lamps.end(), scene::has_disc);
-  std::vector<DeviceLamp> on_device;
+  std::vector<on_device::Lamp> values;
   for (size_t i = 0; i < lamps.size(); ++i) {
-    on_device.push_back(device_lamp(lamps[i]));
-    on_device[i].first_map = direct.plan.first_map[i];
-    on_device[i].map_count = direct.plan.map_count[i];
-    on_device[i].looks_all_round = direct.plan.looks_all_round[i];
+    values.push_back(device_lamp(lamps[i]));
+    values[i].first_map = direct.plan.first_map[i];
+    values[i].map_count = direct.plan.map_count[i];
+    values[i].looks_all_round = direct.plan.looks_all_round[i];
   }
-  LUXEL_TRY_STATUS(put_values(device, on_device, "the lamps", direct.lamps));
+  LUXEL_TRY_STATUS(put_values(device, values, "the lamps", direct.lamps));
   LUXEL_TRY_STATUS(put_values(device, direct.plan.maps, "the maps of shadows", direct.maps));
-  LightNow& now = light_now(scene);
+  on_device::LightNow& now = light_now(scene);
   now.lamp_count = uint32_t(lamps.size());
   now.lamps = direct.lamps.address, now.maps = direct.maps.address;
   return {};

@@ -12,7 +12,7 @@ namespace luxel::view {
 struct DirectLight {
   gpu::Pipeline solid, masked;
   gpu::BindingSets colour_maps;  ///< of each material, for holes
-  gpu::Buffer lamps, maps;       ///< Lamp and ShadowMap of shaders/scene.glsl
+  gpu::Buffer lamps, maps;       ///< on_device::Lamp and ShadowMap
   ShadowPlan plan;
   std::vector<ShadowMap> drawn;  ///< what the picture of the maps holds
 };

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "luxel/base/check.h"
-#include "luxel/base/vec.h"
+#include "luxel/view/draw/inset_shared.h"
 #include "luxel/view/shaders/inset.frag.h"
 #include "luxel/view/shaders/inset.vert.h"
 
@@ -12,14 +12,6 @@ namespace luxel::view {
 namespace {
 
 constexpr uint32_t kInsetMargin = 8;  ///< to the picture's edges [pixels]
-
-/// The push constants of shaders/inset.glsl, in scalar layout.
-struct InsetPush {
-  VkDeviceAddress pixels = 0;
-  uint32_t x = 0, y = 0, width = 0, height = 0;
-  Vec2 picture;
-};
-static_assert(sizeof(InsetPush) == 32);
 
 }  // namespace
 
@@ -34,7 +26,7 @@ Result<DeviceInset> put_inset(const gpu::Device& device, const image::Image8& pi
 Result<gpu::Pipeline> make_inset_shader(const gpu::Device& device, VkFormat color) {
   gpu::DrawParams params;
   params.vertex = inset_vert, params.fragment = inset_frag;
-  params.interface.push_bytes = sizeof(InsetPush);
+  params.interface.push_bytes = sizeof(on_device::InsetPush);
   params.colors = {color};
   params.blends = true;
   return gpu::make_draw_pipeline(device, params);
@@ -45,9 +37,11 @@ void draw_inset(const gpu::Device& device, VkCommandBuffer commands, const gpu::
   const auto begin = [](uint32_t size, uint32_t room) {
     return room > size + kInsetMargin ? room - size - kInsetMargin : 0;
   };
-  InsetPush push{
-      inset.pixels.address, begin(inset.width, width),    begin(inset.height, height), inset.width,
-      inset.height,         {float(width), float(height)}};
+  const on_device::InsetPush push{
+      .pixels = inset.pixels.address,
+      .corner = {begin(inset.width, width), begin(inset.height, height)},
+      .size = {inset.width, inset.height},
+      .picture = {float(width), float(height)}};
   gpu::bind(device, commands, shader, push);
   device.vk.vkCmdDraw(commands, 6, 1, 0, 0);
 }

@@ -6,21 +6,12 @@
 namespace luxel::view {
 namespace {
 
-constexpr uint32_t kGroup = 64;  // local_size_x
-
-/// The push constants of the shader, in scalar layout.
-struct PointsPush {
-  VkDeviceAddress light_now, points, irradiance;
-  uint32_t count;
-};
-constexpr uint32_t kPushBytes = 28;
-static_assert(offsetof(PointsPush, count) + sizeof(uint32_t) == kPushBytes);
-static_assert(sizeof(LitPoint) == 24 && sizeof(Rgb) == 12);
+using on_device::kPointThreads, on_device::PointsPush;
 
 }  // namespace
 
 bool can_light_points(const gpu::Device& device, size_t points) {
-  return (points + kGroup - 1) / kGroup <= device.limits.maxComputeWorkGroupCount[0];
+  return (points + kPointThreads - 1) / kPointThreads <= device.limits.maxComputeWorkGroupCount[0];
 }
 
 Result<LightAtPoints> make_light_at_points(const gpu::Device& device, const DeviceScene& scene,
@@ -45,7 +36,7 @@ void light_points(const gpu::Device& device, VkCommandBuffer commands, const Dev
       device, commands, at.shader,
       PointsPush{scene.light_now.address, at.points.address, at.irradiance.address, at.count});
   gpu::bind_set(device, commands, at.shader, at.maps.sets[0]);
-  device.vk.vkCmdDispatch(commands, (at.count + kGroup - 1) / kGroup, 1, 1);
+  device.vk.vkCmdDispatch(commands, (at.count + kPointThreads - 1) / kPointThreads, 1, 1);
   gpu::full_barrier(device, commands);
 }
 

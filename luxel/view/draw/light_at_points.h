@@ -4,13 +4,11 @@
 #include <span>
 
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/points_shared.h"
 
 namespace luxel::view {
 
-/// A place of a surface [m], and the side that is lit.
-struct LitPoint {
-  Vec3 position, normal;
-};
+using on_device::LitPoint;
 
 /// Resources by which a device works out the light of points, for one scene.
 struct LightAtPoints {

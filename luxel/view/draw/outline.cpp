@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "luxel/view/draw/shadow_shared.h"
 #include "luxel/view/shaders/outline.frag.h"
 #include "luxel/view/shaders/outline_mask.frag.h"
 #include "luxel/view/shaders/screen.vert.h"
@@ -14,14 +15,9 @@ constexpr VkFormat kMaskFormat = VK_FORMAT_R8_UNORM;
 constexpr VkSampleCountFlagBits kMaskSamples = VK_SAMPLE_COUNT_4_BIT;
 constexpr VkDescriptorType kMaskLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
-// The push constants of the shaders, in scalar layout.
-struct MaskPush {
-  std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances;
-  uint32_t instance = 0, material = 0;
-};
-static_assert(sizeof(MaskPush) == 96);
+using on_device::ShadowPush;
 
+/// The push constants of shaders/outline.frag.
 struct LinePush {
   Rgb color;
   float width;
@@ -38,7 +34,7 @@ Result<OutlineShaders> make_outline_shaders(const gpu::Device& device, VkFormat 
   OutlineShaders out;
   gpu::DrawParams mask;
   mask.vertex = shadow_vert, mask.fragment = outline_mask_frag;
-  mask.interface = {sizeof(MaskPush), std::vector<VkDescriptorType>(kLookUps, kMaskLookUp)};
+  mask.interface = {sizeof(ShadowPush), std::vector<VkDescriptorType>(kLookUps, kMaskLookUp)};
   mask.colors = {kMaskFormat}, mask.samples = kMaskSamples;
   LUXEL_TRY(out.mask, gpu::make_draw_pipeline(device, mask));
   gpu::DrawParams line;
@@ -67,8 +63,9 @@ void draw_mask(const gpu::Device& device, VkCommandBuffer commands, const Outlin
                const std::array<float, 16>& clip_from_world) {
   gpu::begin_drawing(device, commands, outliner.mask, {0, 0, 0, 0});
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
-  MaskPush push{clip_from_world, scene.vertices.address, scene.materials.address,
-                scene.instances.address};
+  ShadowPush push{};
+  push.clip_from_world = clip_from_world, push.vertices = scene.vertices.address;
+  push.materials = scene.materials.address, push.instances = scene.instances.address;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance) {
     if (outline.instance && *outline.instance != push.instance) continue;
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/overlay_shared.h"
 #include "luxel/view/shaders/overlay.frag.h"
 #include "luxel/view/shaders/overlay.vert.h"
 
@@ -16,25 +17,7 @@ constexpr size_t kOverlayLookUps = 6;
 /// Where DeviceScene::bindings have the second light.
 constexpr size_t kSecondLight = 6;
 
-// The structs of shaders/overlay.glsl, in scalar layout.
-struct OverlayPush {
-  std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances, look;
-  uint32_t instance = 0, material = 0, culled = 0;
-};
-static_assert(sizeof(OverlayPush) == 112);
-
-struct ShownLook {
-  VkDeviceAddress corners, charts, light_now;
-  float second_light = 0;
-  uint32_t show = 0, channel = 0;
-  float low = 0, high = 1;
-  uint32_t is_logarithmic = 0;
-  float exposure = 1;
-  Vec3 forward{};
-  std::array<uint32_t, 256> colors{};
-};
-static_assert(sizeof(ShownLook) == 64 + 1024);
+using on_device::OverlayPush;
 
 /// Charts and seams of all triangles, in the order in which they are drawn.
 std::vector<uint32_t> drawn_charts(const scene::Scene& scene, const Look& look) {
@@ -99,7 +82,7 @@ Result<Overlay> make_overlay(gpu::Commands& commands, const gpu::Pipeline& shade
   const std::vector<uint32_t> charts = drawn_charts(scene, look);
   LUXEL_TRY(out.charts, gpu::buffer_with(device, std::as_bytes(std::span(charts)),
                                          "the charts of the lightmap"));
-  LUXEL_TRY(out.shown, gpu::make_buffer(device, sizeof(ShownLook), gpu::Access::device,
+  LUXEL_TRY(out.shown, gpu::make_buffer(device, sizeof(on_device::Look), gpu::Access::device,
                                         "what is shown of a bake"));
   constexpr auto kClamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   LUXEL_TRY(gpu::OwnedSampler sampler,
@@ -125,8 +108,9 @@ void set_shown(const gpu::Device& device, VkCommandBuffer commands, const Overla
   const ColorScale scale = frame.show == Show::density
                                ? scale_of(frame.density, overlay.density)
                                : scale_of(frame.irradiance, overlay.irradiance);
-  ShownLook shown{scene.indices.address, overlay.charts.address, scene.light_now.address,
-                  scene.second_light};
+  on_device::Look shown{};
+  shown.corners = scene.indices.address, shown.charts = overlay.charts.address;
+  shown.light_now = scene.light_now.address, shown.second_light = scene.second_light;
   shown.show = uint32_t(frame.show), shown.channel = uint32_t(frame.channel);
   shown.low = scale.low, shown.high = scale.high;
   shown.is_logarithmic = scale.is_logarithmic;
@@ -141,8 +125,10 @@ void set_shown(const gpu::Device& device, VkCommandBuffer commands, const Overla
 void draw_overlay(const gpu::Device& device, VkCommandBuffer commands, const gpu::Pipeline& shader,
                   const Overlay& overlay, const DeviceScene& scene,
                   const std::array<float, 16>& clip_from_world) {
-  OverlayPush push{clip_from_world, scene.vertices.address, scene.materials.address,
-                   scene.instances.address, overlay.shown.address};
+  OverlayPush push{};
+  push.clip_from_world = clip_from_world, push.vertices = scene.vertices.address;
+  push.materials = scene.materials.address, push.instances = scene.instances.address;
+  push.look = overlay.shown.address;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
       push.material = range.material;

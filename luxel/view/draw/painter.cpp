@@ -7,6 +7,9 @@
 #include "luxel/image/half.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/behind_shared.h"
+#include "luxel/view/draw/beside_shared.h"
+#include "luxel/view/draw/mark_shared.h"
 #include "luxel/view/shaders/behind.frag.h"
 #include "luxel/view/shaders/behind.vert.h"
 #include "luxel/view/shaders/beside.frag.h"
@@ -25,26 +28,12 @@ constexpr Rgb kBehindColors{0.806952f, 0.806952f, 0.806952f};      // 232 of 255
 constexpr float kNear = 1e-5f;  // the near plane, over the scene's diagonal
 constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
-// The push constants of the shaders, in scalar layout.
-struct BehindPush {
-  Vec3 forward, right, up;
-  Rgb background, map_scale;
-  float rotation;
-  float exposure;
-  uint32_t show;
-};
-static_assert(sizeof(BehindPush) == 72);
+using on_device::BehindPush, on_device::MarkPush;
 
+/// The push constants of shaders/screen.frag.
 struct ScreenPush {
   uint32_t curve;
 };
-
-struct MarkPush {
-  Vec2 from, to, picture;
-  float radius, edge_width;
-  Rgb color, edge;
-};
-static_assert(sizeof(MarkPush) == 56);
 
 /// The camera of trace::CameraRays as a matrix. Depth is 1 at the near plane and 0 infinitely far,
 /// where floats are finest; parallel rays start at the eye and see as far as the scene goes.
@@ -86,8 +75,7 @@ gpu::DrawParams screen_params() {
 gpu::DrawParams beside_params() {
   gpu::DrawParams params = screen_params();
   params.fragment = beside_frag;
-  constexpr uint32_t kBesidePushBytes = 24;  // BesidePush of beside.cpp
-  params.interface = {kBesidePushBytes, std::vector<VkDescriptorType>(5, kLookUp)};
+  params.interface = {sizeof(on_device::BesidePush), std::vector<VkDescriptorType>(5, kLookUp)};
   return params;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/probe_shared.h"
 #include "luxel/view/shaders/probe.frag.h"
 #include "luxel/view/shaders/probe.vert.h"
 
@@ -13,21 +14,7 @@ namespace {
 /// Round enough for a ball of a tenth of the picture.
 constexpr uint32_t kSlices = 24, kStacks = 12;
 
-// The structs of shaders/probe.glsl, in scalar layout.
-struct DeviceProbe {
-  Vec3 position;
-  std::array<Rgb, kSh2> irradiance;
-};
-static_assert(sizeof(DeviceProbe) == 120);
-
-struct ProbePush {
-  std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress probes, look;
-  uint32_t shows_false_colors = 0;
-  float exposure = 1, radius = 0;
-  uint32_t slices = kSlices, stacks = kStacks, padding = 0;
-};
-static_assert(sizeof(ProbePush) == 104);
+using on_device::ProbePush;
 
 }  // namespace
 
@@ -41,7 +28,7 @@ Result<gpu::Pipeline> make_probe_shader(const gpu::Device& device, VkFormat colo
 
 Result<DeviceProbes> put_probes(const gpu::Device& device, const ProbeBalls& balls) {
   DeviceProbes out;
-  std::vector<DeviceProbe> probes;
+  std::vector<on_device::Probe> probes;
   for (const light::Probe& probe : balls.probes)
     probes.push_back({probe.position, probe.irradiance});
   out.count = uint32_t(probes.size()), out.radius_m = radius_of(balls);
@@ -54,9 +41,14 @@ Result<DeviceProbes> put_probes(const gpu::Device& device, const ProbeBalls& bal
 void draw_probes(const gpu::Device& device, VkCommandBuffer commands, const gpu::Pipeline& shader,
                  const DeviceProbes& probes, const Overlay* overlay, const Frame& frame,
                  const std::array<float, 16>& clip_from_world) {
-  ProbePush push{clip_from_world, probes.probes.address, overlay ? overlay->shown.address : 0};
-  push.shows_false_colors = overlay != nullptr && frame.show == Show::irradiance;
-  push.exposure = frame.exposure, push.radius = probes.radius_m;
+  const ProbePush push{.clip_from_world = clip_from_world,
+                       .probes = probes.probes.address,
+                       .look = overlay ? overlay->shown.address : 0,
+                       .shows_false_colors = overlay != nullptr && frame.show == Show::irradiance,
+                       .exposure = frame.exposure,
+                       .radius = probes.radius_m,
+                       .slices = kSlices,
+                       .stacks = kStacks};
   gpu::bind(device, commands, shader, push);
   device.vk.vkCmdDraw(commands, 6 * kSlices * kStacks, probes.count, 0, 0);
 }

@@ -2,29 +2,14 @@
 
 #include "luxel/base/check.h"
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/quadratic_shared.h"
 #include "luxel/view/shaders/quadratic.frag.h"
 #include "luxel/view/shaders/quadratic.vert.h"
 
 namespace luxel::view {
 namespace {
 
-// The structs of shaders/quadratic.glsl, in scalar layout.
-struct QuadraticTriangle {
-  std::array<Vec3, 3> corner;
-  std::array<Rgb, 6> irradiance;
-  Rgb reflectance, emission;
-  uint32_t group = 0, two_sided = 0;
-};
-static_assert(sizeof(QuadraticTriangle) == 140);
-
-struct QuadraticPush {
-  std::array<float, 16> clip_from_world;
-  VkDeviceAddress triangles = 0, exact = 0;
-  uint32_t exact_width = 0;  ///< 0: there are no exact pixels
-  float exposure = 1;
-  uint32_t show = 0;
-};
-static_assert(sizeof(QuadraticPush) == 96);
+using on_device::QuadraticPush, on_device::QuadraticTriangle;
 
 }  // namespace
 
@@ -59,7 +44,8 @@ void draw_quadratics(const gpu::Device& device, VkCommandBuffer commands,
                      const gpu::Pipeline& shader, const DeviceQuadratics& mesh,
                      const std::optional<ExactPixels>& exact,
                      const std::array<float, 16>& clip_from_world, const Frame& frame) {
-  QuadraticPush push{clip_from_world, mesh.triangles.address};
+  QuadraticPush push{};
+  push.clip_from_world = clip_from_world, push.triangles = mesh.triangles.address;
   if (exact) push.exact = exact->pixels.address, push.exact_width = exact->width;
   push.exposure = frame.exposure, push.show = uint32_t(frame.show);
   gpu::bind(device, commands, shader, push);

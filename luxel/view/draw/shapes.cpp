@@ -1,6 +1,7 @@
 #include "luxel/view/draw/shapes.h"
 
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/shape_shared.h"
 #include "luxel/view/shaders/shape.frag.h"
 #include "luxel/view/shaders/shape.vert.h"
 
@@ -10,17 +11,9 @@ namespace {
 /// So much nearer to the eye are shapes drawn, over their distance.
 constexpr float kShapeNearer = 1e-3f;
 
-// The push constants of the shaders, in scalar layout.
-struct ShapePush {
-  std::array<float, 16> clip_from_world;
-  VkDeviceAddress corners = 0;
-  Vec2 picture;
-  float width = 1;
-  float nearer = 0, nearer_parallel = 0;
-  uint32_t kind = 0;  ///< 0 triangles, 1 lines, 2 discs
-  uint32_t curve = 0;
-};
-static_assert(sizeof(ShapePush) == 104 && sizeof(ShapeCorner) == 28);
+using on_device::ShapePush;
+
+static_assert(sizeof(ShapeCorner) == 28);  // as shaders/shape.glsl reads it
 
 gpu::DrawParams shape_params(VkFormat color, VkSampleCountFlagBits samples, bool is_hidden) {
   gpu::DrawParams params = among_surfaces(color, samples);
@@ -64,8 +57,9 @@ Result<ShapeShaders> make_shape_shaders(const gpu::Device& device, VkFormat colo
 
 void draw_shapes(const gpu::Device& device, VkCommandBuffer commands, const ShapeShaders& shaders,
                  const DeviceShapes& shapes, const ShapeView& view) {
-  ShapePush push{view.clip_from_world, shapes.corners.address, view.picture};
-  push.curve = uint32_t(view.curve);
+  ShapePush push{};
+  push.clip_from_world = view.clip_from_world, push.corners = shapes.corners.address;
+  push.picture = view.picture, push.curve = uint32_t(view.curve);
   (view.is_parallel ? push.nearer_parallel : push.nearer) = kShapeNearer;
   const gpu::Pipeline& shader = shapes.is_hidden ? shaders.hidden : shaders.on_top;
   const auto draw = [&](uint32_t kind, uint32_t count, uint32_t corners, uint32_t vertices) {
@@ -76,11 +70,11 @@ void draw_shapes(const gpu::Device& device, VkCommandBuffer commands, const Shap
     }
     push.corners += VkDeviceSize(count) * corners * sizeof(ShapeCorner);
   };
-  draw(0, shapes.triangles, 3, 3);
+  draw(on_device::kTriangleShapes, shapes.triangles, 3, 3);
   push.width = shapes.line_width;
-  draw(1, shapes.lines, 2, 6);
+  draw(on_device::kLineShapes, shapes.lines, 2, 6);
   push.width = shapes.disc_width;
-  draw(2, shapes.discs, 1, 6);
+  draw(on_device::kDiscShapes, shapes.discs, 1, 6);
 }
 
 }  // namespace luxel::view

@@ -5,6 +5,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/surface_shared.h"
 #include "luxel/view/shaders/surface.frag.h"
 #include "luxel/view/shaders/surface.vert.h"
 
@@ -25,16 +26,7 @@ struct Drawn {
 
 namespace {
 
-/// The push constants of the shader, in scalar layout.
-struct SurfacePush {
-  std::array<float, 16> clip_from_world;
-  VkDeviceAddress vertices, materials, instances, light_now;
-  uint32_t instance = 0, material = 0;
-  float exposure = 1;
-  uint32_t show = 0;
-  float second_light = 0;
-};
-static_assert(sizeof(SurfacePush) == 120);
+using on_device::SurfacePush;
 
 VkCullModeFlags cull_of(const DeviceScene& scene, uint32_t instance, uint32_t material) {
   if (scene.is_double_sided[material]) return VK_CULL_MODE_NONE;
@@ -98,16 +90,11 @@ const gpu::Pipeline& SurfaceShaders::for_surfaces(const DeviceScene& scene, uint
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands,
                    const SurfaceShaders& shaders, const DeviceScene& scene, const SurfaceView& view,
                    const Frame& frame) {
-  SurfacePush push{view.clip_from_world,
-                   scene.vertices.address,
-                   scene.materials.address,
-                   scene.instances.address,
-                   scene.light_now.address,
-                   0,
-                   0,
-                   frame.exposure,
-                   uint32_t(frame.show),
-                   scene.second_light};
+  SurfacePush push{};
+  push.clip_from_world = view.clip_from_world, push.vertices = scene.vertices.address;
+  push.materials = scene.materials.address, push.instances = scene.instances.address;
+  push.light_now = scene.light_now.address, push.second_light = scene.second_light;
+  push.exposure = frame.exposure, push.show = uint32_t(frame.show);
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {

@@ -5,51 +5,25 @@
 #include "luxel/base/check.h"
 #include "luxel/display/local_light.h"
 #include "luxel/view/draw/among_surfaces.h"
+#include "luxel/view/draw/technique_shared.h"
 #include "luxel/view/shaders/technique.frag.h"
 #include "luxel/view/shaders/technique.vert.h"
 
 namespace luxel::view {
 namespace {
 
-// The structs of shaders/technique.glsl, in scalar layout.
-struct TechniquePush {
-  std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress corners, elements, highlights, materials, looking;
-  uint32_t material = 0, technique = 0;
-  float exposure = 1;
-};
-static_assert(sizeof(TechniquePush) <= 120);
+using on_device::LitElement, on_device::Looking, on_device::Phong, on_device::TechniquePush;
 
-struct DeviceElement {
-  Rgb irradiance, reflectance;
-};
-
-struct Highlight {
-  Rgb specular;
-  float sharpness = 1;
-};
-
-struct Looking {
-  Vec3 eye;
-  uint32_t is_parallel = 0;
-  Vec3 back;
-  Rgb ambient, light;
-  Vec3 to_light;
-};
-static_assert(sizeof(Looking) == 64);
-
-std::span<DeviceElement> elements_of(const DeviceTechniques& t) {
-  return {reinterpret_cast<DeviceElement*>(t.elements.mapped),
-          t.elements.size / sizeof(DeviceElement)};
+std::span<LitElement> elements_of(const DeviceTechniques& t) {
+  return {reinterpret_cast<LitElement*>(t.elements.mapped), t.elements.size / sizeof(LitElement)};
 }
 
 Result<gpu::Buffer> put_elements(const gpu::Device& device, std::span<const Rgb> reflectance) {
-  LUXEL_TRY(
-      gpu::Buffer out,
-      gpu::make_buffer(device, std::max<size_t>(1, reflectance.size()) * sizeof(DeviceElement),
-                       gpu::Access::from_host, "the light of elements"));
+  LUXEL_TRY(gpu::Buffer out,
+            gpu::make_buffer(device, std::max<size_t>(1, reflectance.size()) * sizeof(LitElement),
+                             gpu::Access::from_host, "the light of elements"));
   std::memset(out.mapped, 0, size_t(out.size));
-  auto* elements = reinterpret_cast<DeviceElement*>(out.mapped);
+  auto* elements = reinterpret_cast<LitElement*>(out.mapped);
   for (size_t i = 0; i < reflectance.size(); ++i) elements[i].reflectance = reflectance[i];
   return out;
 }
@@ -100,7 +74,7 @@ Result<DeviceTechniques> put_techniques(const gpu::Device& device, const scene::
   out.lamps.lights = scene.lights;
   LUXEL_TRY(out.own, put_corners(device, corners_of(scene)));
   LUXEL_TRY(out.elements, put_elements(device, {}));
-  std::vector<Highlight> highlights{{}};  // a buffer is not empty
+  std::vector<Phong> highlights{{{}, 1}};  // a buffer is not empty
   for (const scene::Material& m : scene.materials)
     highlights.push_back({min(max(m.specular, Rgb{}), Rgb{1, 1, 1}), m.sharpness});
   if (highlights.size() > 1) highlights.erase(highlights.begin());
@@ -120,7 +94,7 @@ Status put_mesh(const gpu::Device& device, const SurfaceCorners& mesh,
 }
 
 void put_irradiance(std::span<const Rgb> irradiance, DeviceTechniques& out) {
-  const std::span<DeviceElement> elements = elements_of(out);
+  const std::span<LitElement> elements = elements_of(out);
   LUXEL_CHECK(irradiance.size() <= elements.size());
   for (size_t i = 0; i < irradiance.size(); ++i) elements[i].irradiance = irradiance[i];
 }
@@ -132,9 +106,10 @@ void draw_technique(const gpu::Device& device, VkCommandBuffer commands,
   std::memcpy(techniques.looking.mapped, &looking, sizeof(looking));
   const bool of_mesh = techniques.mesh && needs_mesh(*frame.technique);
   const DeviceCorners& drawn = of_mesh ? *techniques.mesh : techniques.own;
-  TechniquePush push{view.clip_from_world,        drawn.corners.address,
-                     techniques.elements.address, techniques.highlights.address,
-                     scene.materials.address,     techniques.looking.address};
+  TechniquePush push{};
+  push.clip_from_world = view.clip_from_world, push.corners = drawn.corners.address;
+  push.elements = techniques.elements.address, push.highlights = techniques.highlights.address;
+  push.materials = scene.materials.address, push.looking = techniques.looking.address;
   push.technique = uint32_t(*frame.technique), push.exposure = frame.exposure;
   for (const CornerRange& range : drawn.ranges) {
     const gpu::Pipeline& pipeline =

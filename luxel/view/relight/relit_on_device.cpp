@@ -4,29 +4,15 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/clock.h"
+#include "luxel/view/relight/relit_map_shared.h"
 #include "luxel/view/shaders/relit_map.comp.h"
 
 namespace luxel::view {
 namespace {
 
-constexpr uint32_t kThreads = 64;  // local_size_x
 constexpr std::string_view kWhat = "the buffer of the lightmap";
 
-/// kStep of the shader.
-enum class MapStep : uint8_t { places, gutter, largest, halves };
-
-/// Map of the shader.
-struct DeviceMap {
-  VkDeviceAddress light, place = 0, pixel = 0, gutter = 0, first = 0, from = 0, pixels = 0;
-  VkDeviceAddress largest, halves, scale;
-  uint32_t pixel_count, unused = 0;
-};
-static_assert(sizeof(DeviceMap) == 88);
-
-struct MapPush {
-  VkDeviceAddress map;
-  uint32_t begin, end;
-};
+using on_device::kMapThreads, on_device::MapPush;
 
 /// Sends some numbers; their buffer is held. Returns its address.
 Result<VkDeviceAddress> send(gpu::Commands& commands, std::span<const uint32_t> numbers,
@@ -50,12 +36,11 @@ Status make_map(gpu::Commands& commands, const MapPlaces& places, const DeviceSc
   LUXEL_TRY(out.largest, gpu::make_buffer(device, sizeof(uint32_t), gpu::Access::device, kWhat));
   LUXEL_TRY(out.halves, gpu::make_buffer(device, size_t(out.pixel_count) * 4 * sizeof(uint16_t),
                                          gpu::Access::device, kWhat));
+  on_device::RelitMap map{};
+  map.light = out.relighter.indirect_at_points(), map.largest = out.largest.address;
+  map.halves = out.halves.address, map.pixel_count = out.pixel_count;
   // The scale of the first page's first picture is the first one.
-  DeviceMap map{.light = out.relighter.indirect_at_points(),
-                .largest = out.largest.address,
-                .halves = out.halves.address,
-                .scale = scene.light_now.address + sizeof(LightNow),
-                .pixel_count = out.pixel_count};
+  map.scale = scene.light_now.address + sizeof(on_device::LightNow);
   LUXEL_TRY(map.place, send(commands, places.place, out));
   LUXEL_TRY(map.pixel, send(commands, places.pixel, out));
   LUXEL_TRY(map.gutter, send(commands, places.gutter, out));
@@ -67,14 +52,14 @@ Status make_map(gpu::Commands& commands, const MapPlaces& places, const DeviceSc
 }
 
 /// Records a step for [begin, end), after all that came before.
-void record(const gpu::Device& device, VkCommandBuffer c, const RelitOnDevice& relit, MapStep step,
+void record(const gpu::Device& device, VkCommandBuffer c, const RelitOnDevice& relit, uint32_t step,
             uint32_t begin, uint32_t end) {
   gpu::full_barrier(device, c);
-  const uint32_t most = device.limits.maxComputeWorkGroupCount[0] * kThreads;
+  const uint32_t most = device.limits.maxComputeWorkGroupCount[0] * kMapThreads;
   for (; begin < end; begin += std::min(most, end - begin)) {
     const uint32_t count = std::min(most, end - begin);
-    gpu::bind(device, c, relit.steps[size_t(step)], MapPush{relit.map.address, begin, end});
-    device.vk.vkCmdDispatch(c, (count + kThreads - 1) / kThreads, 1, 1);
+    gpu::bind(device, c, relit.steps[step], MapPush{relit.map.address, begin, end});
+    device.vk.vkCmdDispatch(c, (count + kMapThreads - 1) / kMapThreads, 1, 1);
   }
 }
 
@@ -82,14 +67,14 @@ void record(const gpu::Device& device, VkCommandBuffer c, const RelitOnDevice& r
 void record_map(const gpu::Device& device, VkCommandBuffer c, const RelitOnDevice& relit,
                 const gpu::Picture& lightmap) {
   device.vk.vkCmdFillBuffer(c, relit.largest.buffer.get(), 0, VK_WHOLE_SIZE, 0);
-  record(device, c, relit, MapStep::places, 0, relit.place_count);
+  record(device, c, relit, on_device::kMapPlaces, 0, relit.place_count);
   uint32_t begin = 0;
   for (const uint32_t end : relit.ring_end) {
-    record(device, c, relit, MapStep::gutter, begin, end);
+    record(device, c, relit, on_device::kMapGutter, begin, end);
     begin = end;
   }
-  record(device, c, relit, MapStep::largest, 0, relit.pixel_count);
-  record(device, c, relit, MapStep::halves, 0, relit.pixel_count);
+  record(device, c, relit, on_device::kMapLargest, 0, relit.pixel_count);
+  record(device, c, relit, on_device::kMapHalves, 0, relit.pixel_count);
   gpu::full_barrier(device, c);
   gpu::record_pixels(device, c, lightmap, relit.halves);
 }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "behind.glsl"
+#include "luxel/view/draw/behind_shared.h"
 
 layout(binding = 0) uniform sampler2D map;
 layout(location = 0) in vec3 towards;

@@ -1,7 +1,7 @@
 // All of the screen, infinitely far away.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "behind.glsl"
+#include "luxel/view/draw/behind_shared.h"
 
 layout(location = 0) out vec3 towards;
 

@@ -1,15 +1,8 @@
 // Two pictures of one view: beside one another, or how far they are apart.
 #version 460
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/view/draw/beside_shared.h"
 
-layout(buffer_reference, scalar) readonly buffer Colors { uint at[]; };  // 256, 0xbbggrr
-layout(push_constant, scalar) uniform Push {
-  Colors colors;
-  uint mode;     // view::BesideMode
-  float line_at; // in pixels from the left
-  float highest; // relative difference with the last colour
-};
 layout(binding = 0) uniform sampler2D first;
 layout(binding = 1) uniform sampler2D second;
 layout(binding = 2) uniform sampler2D first_exposed;

@@ -1,5 +1,5 @@
 // Light straight from lamps, as luxel/light/lights.h has it. luxel/view/draw/direct_light.h has the
-// structs and the maps of shadows. `lamps_drawn` is a constant of the shader that includes it, and
+// maps of shadows. `lamps_drawn` is a constant of the shader that includes it, and
 // turn_of_place() an angle that differs from place to place.
 
 // E on a surface that faces the lamp squarely, and the way to it.

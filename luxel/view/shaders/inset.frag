@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "inset.glsl"
+#include "luxel/view/draw/inset_shared.h"
 
 layout(location = 0) out vec4 shown;
 

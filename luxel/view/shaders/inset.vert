@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "inset.glsl"
+#include "luxel/view/draw/inset_shared.h"
 
 void main() {
   vec2 part = vec2(gl_VertexIndex == 1 || gl_VertexIndex == 2 || gl_VertexIndex == 4,

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "mark.glsl"
+#include "luxel/view/draw/mark_shared.h"
 
 layout(location = 0) in vec2 at;
 layout(location = 0) out vec4 shown;

@@ -1,7 +1,7 @@
 // A rectangle along the line from one end to the other, with room for round ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "mark.glsl"
+#include "luxel/view/draw/mark_shared.h"
 
 layout(location = 0) out vec2 at;
 

@@ -1,7 +1,8 @@
 // What is outlined is white; holes of masks are not.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shadow.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/shadow_shared.h"
 
 layout(binding = 1) uniform sampler2D map;  // as surface.frag has it
 layout(location = 0) in vec2 at_map;

@@ -1,7 +1,8 @@
 // What a bake is made of, as colours of its surfaces. They are linear light of what a screen shows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "overlay.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/overlay_shared.h"
 
 layout(binding = 0) uniform sampler2D light;
 layout(binding = 1) uniform sampler2D map;

@@ -1,7 +1,8 @@
 // Corners one by one, so that each triangle has its own.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "overlay.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/overlay_shared.h"
 
 layout(location = 0) centroid out vec2 at_light;
 layout(location = 1) out vec2 at_map;

@@ -1,25 +1,14 @@
-// E straight from lamps at points of surfaces. luxel/view/draw/light_at_points.h has the structs.
+// E straight from lamps at points of surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "scene.glsl"
 
-layout(local_size_x = 64) in;
 layout(binding = 0) uniform sampler2DShadow shadow_maps;
 layout(binding = 1) uniform sampler2D shadow_depth;
 
-struct Point {
-  vec3 position, normal;
-};
-layout(buffer_reference, scalar) readonly buffer Points { Point at[]; };
-layout(buffer_reference, scalar) writeonly buffer Irradiance { vec3 at[]; };
+#include "luxel/view/draw/points_shared.h"
 
-layout(push_constant, scalar) uniform Push {
-  LightNow light_now;
-  Points points;
-  Irradiance irradiance;
-  uint count;
-};
-
+layout(local_size_x = kPointThreads) in;
 layout(constant_id = 0) const uint lamps_drawn = 2;
 
 // Over a turn, by the golden ratio.
@@ -30,6 +19,6 @@ float turn_of_place() { return 6.28318531 * fract(float(gl_GlobalInvocationID.x)
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
-  Point p = points.at[i];
+  LitPoint p = points.at[i];
   irradiance.at[i] = direct_light(p.position, p.normal, p.normal);
 }

@@ -1,7 +1,8 @@
 // A white ball in the light that a probe knows: E(n), as sh2_value() of luxel/base has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "probe.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/probe_shared.h"
 
 layout(location = 0) in vec3 normal;
 layout(location = 1) flat in uint probe;

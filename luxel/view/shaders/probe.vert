@@ -1,7 +1,8 @@
 // A ball of two triangles for each part of its height and its girth.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "probe.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/probe_shared.h"
 
 layout(location = 0) out vec3 normal;
 layout(location = 1) flat out uint probe;

@@ -1,7 +1,7 @@
 // What a surface sends to the eye, rho E / pi + L, by the quadratic function of its triangle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "quadratic.glsl"
+#include "luxel/view/draw/quadratic_shared.h"
 
 layout(location = 0) centroid in vec2 at;
 layout(location = 1) flat in uvec2 group_and_sides;

@@ -2,7 +2,7 @@
 // a triangle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "quadratic.glsl"
+#include "luxel/view/draw/quadratic_shared.h"
 
 layout(location = 0) centroid out vec2 at;
 layout(location = 1) flat out uvec2 group_and_sides;

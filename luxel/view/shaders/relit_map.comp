@@ -1,35 +1,14 @@
-// Light of places as the picture that shaders look up, step by step. ../relight/relit_on_device.cpp
-// has the structs.
+// Light of places as the picture that shaders look up, step by step.
 #version 460
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_scalar_block_layout : require
-layout(local_size_x = 64) in;
+#extension GL_GOOGLE_include_directive : require
+#include "luxel/gpu/shared_language.h"
 
-layout(constant_id = 0) const uint kStep = 0;
-const uint kPlaces = 0, kGutter = 1, kLargest = 2, kHalves = 3;
-
-layout(buffer_reference, scalar) readonly buffer Light { vec3 at[]; };
-layout(buffer_reference, scalar) readonly buffer Numbers { uint at[]; };
-layout(buffer_reference, scalar) buffer Pixels { vec3 at[]; };
-layout(buffer_reference, scalar) buffer Halves { uvec2 at[]; };
-layout(buffer_reference, scalar) buffer Number { uint value; };
+BLOCK(Number) { uint value; };
 layout(buffer_reference, scalar) writeonly buffer Scale { float value; };
+#include "luxel/view/relight/relit_map_shared.h"
 
-// view::MapPlaces, and what becomes of them.
-layout(buffer_reference, scalar) buffer Map {
-  Light light;
-  Numbers place, pixel;
-  Numbers gutter, first, from;
-  Pixels pixels;   // E
-  Number largest;  // the bits of a float
-  Halves halves;
-  Scale scale;     // E = scale * half
-  uint pixel_count;
-};
-layout(push_constant, scalar) uniform Push {
-  Map map;
-  uint begin, end;  // places, pixels of the gutter, or pixels
-};
+layout(local_size_x = kMapThreads) in;
+layout(constant_id = 0) const uint kStep = 0;
 
 vec3 light_of_place(uint place) {
   vec3 e = map.light.at[place];
@@ -54,11 +33,11 @@ float scale_now() {
 void main() {
   uint k = begin + gl_GlobalInvocationID.x;
   if (k >= end) return;
-  if (kStep == kPlaces) {
+  if (kStep == kMapPlaces) {
     map.pixels.at[map.pixel.at[k]] = light_of_place(map.place.at[k]);
-  } else if (kStep == kGutter) {
+  } else if (kStep == kMapGutter) {
     map.pixels.at[map.gutter.at[k]] = mean_around(k);
-  } else if (kStep == kLargest) {
+  } else if (kStep == kMapLargest) {
     vec3 e = abs(map.pixels.at[k]);
     float largest = max(e.x, max(e.y, e.z));
     if (largest > 0) atomicMax(map.largest.value, floatBitsToUint(largest));  // such bits are in order

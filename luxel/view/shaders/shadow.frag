@@ -1,7 +1,8 @@
 // Holes of masks let light through.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shadow.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/shadow_shared.h"
 
 layout(binding = 0) uniform sampler2D map;
 layout(location = 0) in vec2 at_map;

@@ -1,7 +1,8 @@
 // Surfaces as a lamp sees them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shadow.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/shadow_shared.h"
 
 layout(location = 0) out vec2 at_map;
 layout(location = 1) out float clear;

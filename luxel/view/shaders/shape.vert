@@ -17,11 +17,11 @@ void main() {
   int corner = gl_VertexIndex % 6;
   bool is_end = corner == 1 || corner == 2 || corner == 4;
   vec2 aside = corner == 2 || corner == 4 || corner == 5 ? vec2(1) : vec2(-1);
-  if (kind == 0) {
+  if (kind == kTriangleShapes) {
     Corner c = corners.at[gl_VertexIndex];
     color = vec4(c.color, c.opacity);
     gl_Position = clip_of(c);
-  } else if (kind == 1) {
+  } else if (kind == kLineShapes) {
     Corner first = corners.at[gl_VertexIndex / 6 * 2], last = corners.at[gl_VertexIndex / 6 * 2 + 1];
     Corner own = is_end ? last : first;
     color = vec4(own.color, own.opacity);

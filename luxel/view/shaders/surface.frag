@@ -1,7 +1,8 @@
 // What a surface sends to the eye: rho E / pi + L, as luxel/display/draw.h has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "surface.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/surface_shared.h"
 
 layout(binding = 0) uniform sampler2D light;
 layout(binding = 1) uniform sampler2D map;

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "surface.glsl"
+#include "scene.glsl"
+#include "luxel/view/draw/surface_shared.h"
 
 layout(location = 0) centroid out vec2 at_light;
 layout(location = 1) centroid out vec2 at_light_behind;

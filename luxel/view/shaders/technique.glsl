@@ -1,4 +1,4 @@
-// What the shaders of techniques share: luxel/view/draw/technique_drawing.cpp has the structs.
+// What the shaders of techniques share.
 #include "scene.glsl"
 
 // view::SurfaceCorner
@@ -9,34 +9,8 @@ struct Corner {
   float clear;
   uint element, item;
 };
-struct Element {
-  vec3 irradiance, reflectance;
-};
-struct Phong {
-  vec3 specular;
-  float sharpness;
-};
-layout(buffer_reference, scalar) readonly buffer Corners { Corner at[]; };
-layout(buffer_reference, scalar) readonly buffer Elements { Element at[]; };
-layout(buffer_reference, scalar) readonly buffer Highlights { Phong at[]; };
-// Who looks, and the one light of local illumination.
-layout(buffer_reference, scalar) readonly buffer Looking {
-  vec3 eye;
-  uint is_parallel;
-  vec3 back;  // against the view
-  vec3 ambient, light, to_light;
-};
-
-layout(push_constant, scalar) uniform Push {
-  mat4 clip_from_world;
-  Corners corners;
-  Elements elements;
-  Highlights highlights;
-  Materials materials;
-  Looking looking;
-  uint material, technique;
-  float exposure;
-};
+IN_BUFFER(SurfaceCorners, Corner);
+#include "luxel/view/draw/technique_shared.h"
 
 // view::Technique
 const uint c = 0, ca = 1, cad = 2, cas = 3, cads = 4, cas_pixel = 5, cads_pixel = 6, normals = 7,

@@ -50,7 +50,7 @@ void main() {
   place = v.position;
   light = vec3(0);
   if (technique == radiosity || technique == radiosity_vertex) {
-    Element e = elements.at[v.element];
+    LitElement e = elements.at[v.element];
     light = technique == radiosity ? e.irradiance : e.irradiance * e.reflectance;
   }
   weights = vec3(gl_VertexIndex == first, gl_VertexIndex == first + 1, gl_VertexIndex == first + 2);

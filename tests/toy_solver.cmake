@@ -1,4 +1,4 @@
-# Applies the diff in ARCHITECTURE.md to copies of the files that it changes.
+# Applies the diffs in ARCHITECTURE.md to copies of the files that it changes.
 #
 #   cmake -D SOURCE=... -D FOLDER=... -D "FILES=a b" -P toy_solver.cmake    FILES relative to SOURCE
 separate_arguments(FILES)
@@ -12,5 +12,5 @@ execute_process(COMMAND patch --batch --forward --strip 1 --directory ${FOLDER}
                         --input ${SOURCE}/ARCHITECTURE.md
                 RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
 if(failed)
-  message(FATAL_ERROR "ARCHITECTURE.md's diff of a toy solver does not apply any more:\n${said}")
+  message(FATAL_ERROR "ARCHITECTURE.md's diff of a toy solver or of a new member does not apply any more:\n${said}")
 endif()

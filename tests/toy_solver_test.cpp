@@ -1,9 +1,11 @@
 // The sixth solver, of ARCHITECTURE.md's diff, linked in front of the table that luxel has.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "luxel/pipeline/solver/bake_options.h"
+#include "luxel/solve/device/relight_shared.h"
 #include "luxel/validate/agreement.h"
 
 namespace luxel::validate {
@@ -47,6 +49,12 @@ TEST(ToySolver, AgreesWithGather) {
   const auto paths = solve(**p, "paths", {}, progress), gather = solve(**p, "gather", {}, progress);
   ASSERT_TRUE(paths && gather);
   EXPECT_NEAR(mean_luminance(paths->light) / mean_luminance(gather->light), 1, 0.016);
+}
+
+// The diff's new member of a buffer: this is the copy that has it.
+TEST(ToyMember, FollowsTheOneBefore) {
+  using on_device::RelightSetup;
+  EXPECT_EQ(offsetof(RelightSetup, darkest), offsetof(RelightSetup, kept_unit) + sizeof(Rgb));
 }
 
 }  // namespace
